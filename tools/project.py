@@ -17,6 +17,7 @@ KNOWLEDGE = ROOT / "notebook/knowledge"  # the only path from here into the note
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
 VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba, the slowest first
 BAR_WIDTH = 24
+ROW = 1000  # characters of a line of JSON: the longest row of a record has 740
 INSTALL = "./lab install" if os.name == "posix" else "python -m pip install numpy scipy matplotlib pillow"
 
 
@@ -209,19 +210,30 @@ def write_bytes(file, content):
     os.replace(unfinished, file)
 
 
-def write_json(file, content, depth=None):
-    """Writes JSON with one line for each item of its lists and objects; those at depth `depth` take a single line."""
-    write_bytes(file, (json_lines(content, depth) + "\n").encode())
+def write_json(file, content, width=ROW):
+    """Writes JSON whose lines have this many characters at most, if what they hold can be divided."""
+    write_bytes(file, (json_rows(content, width) + "\n").encode())
 
 
-def json_lines(content, depth, indent="\n"):
-    if depth == 0 or not content or not isinstance(content, (dict, list)):
-        return json.dumps(content, ensure_ascii=False)
-    indent += " "
-    lines = [json_lines(item, depth and depth - 1, indent) for item in (content.values() if isinstance(content, dict) else content)]
-    if isinstance(content, dict):
-        lines = [f"{json.dumps(key, ensure_ascii=False)}: {line}" for key, line in zip(content, lines)]
-    return "[{"[isinstance(content, dict)] + ",".join(indent + line for line in lines) + indent[:-1] + "]}"[isinstance(content, dict)]
+def json_rows(content, width=ROW, indent="\n", key=""):
+    """JSON with a row a line: what fits into a line takes a single one, and plain values of a larger object or list share lines."""
+    text, is_object = json.dumps(content, ensure_ascii=False), isinstance(content, dict)
+    if len(indent + key + text) <= width or is_plain(content):
+        return key + text
+    rows, last = [], content
+    for name, item in content.items() if is_object else enumerate(content):
+        row = json_rows(item, width, indent + " ", f"{json.dumps(name, ensure_ascii=False)}: " if is_object else "")
+        if is_plain(item) and is_plain(last) and len(f"{indent} {rows[-1]}, {row}") <= width:
+            rows[-1] += f", {row}"
+        else:
+            rows.append(row)
+        last = item
+    return key + text[0] + ",".join(f"{indent} {row}" for row in rows) + indent + text[-1]
+
+
+def is_plain(value):
+    """Whether a value of JSON holds no others."""
+    return not value or not isinstance(value, (dict, list))
 
 
 def scene_of(name):

@@ -12,13 +12,14 @@ import project
 from check import grading
 from check.diagnosis import diagnose, verdict_with
 from check.experiments import experiments_of
+from check.submission import Submission
 from learning.learn import Workshop, digest, own_text, parse, settings
 from learning.planting import trials
 from project import commit, read_json, write_json
 from report.batch import run_all
 from report.sources import code
-from tables.ages import stamped
 from tables.records import RECORDS
+from tables.sources import stamped
 
 GOES_ON = True
 RECORD = RECORDS / "check/confusion.json"
@@ -48,21 +49,21 @@ def confusion(workshop, chapters, is_anew, jobs):
         key, (trial, measured) = item
         plan = workshop.settings(TRYING, 2 * TRYING["runs"] * trial.seed)
         with tempfile.TemporaryDirectory() as folder:
-            file = Path(folder) / "path_trace.glsl"
-            file.write_text(trial.text, encoding="utf-8")
-            result = grading.judge(trial.chapter, file, plan, shader=trial.shader)[0]
-            found = diagnose(trial.chapter, file, plan, trial.shader, is_correct=result["verdict"] == "correct")
+            submission = Submission(trial.chapter, Path(folder) / "path_trace.glsl", trial.shader)
+            submission.file.write_text(trial.text, encoding="utf-8")
+            result = grading.judge(submission, plan)[0]
+            found = diagnose(submission, plan, result["verdict"] == "correct")
             answer = {"mistake": trial.mistake, "verdict": verdict_with(result["verdict"], found), "named": [each["name"] for each in found["mistakes"]],
                       "fits": found["fits"], "facts": len(found["facts"]), "measured": measured, **effect(result)}
         with lock:
             record["trials"][key] = answer
-            write_json(RECORD, record, 2)
+            write_json(RECORD, record)
 
     missing = [(key, everything[key]) for key in planned_trials(chapters) if key not in record["trials"]]
     random.Random(0).shuffle(missing)  # what an interrupted run has done is a fair sample
     run_all("naming", try_naming, missing, jobs)
     record["trials"] = {key: record["trials"][key] for key in everything if key in record["trials"]}
-    write_json(RECORD, stamped(record), 2)
+    write_json(RECORD, stamped(record))
 
 
 def effect(result):

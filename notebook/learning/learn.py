@@ -14,8 +14,10 @@ from threading import Lock
 import project
 from check import grading
 from check.diagnosis import observe
+from check.expected import DESCRIPTIONS, expected_file, known_mistakes
 from check.experiments import experiments_of, pictures, together
 from check.names import ratios_of
+from check.submission import Submission, replaced
 from course.mistakes import catalogue, own_shader
 from project import CHAPTERS, Parser, add_device_options, number, read_json, write_json
 from report.batch import Batch, run_all
@@ -26,7 +28,7 @@ GOES_ON = True
 # Levels use the seeds of a check without --seed, see grading.first_seed(); the others use seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0)}
 # The chapter that a chapter should beat in noise with the same samples, if that is its lesson.
-GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
+GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in DESCRIPTIONS.items()
               if "gains_over" in says.get("check", {})}
 OWN_SEED, OWN_PICTURES, MISTAKE_SEED = 5001, 4, 6001  # of experiments
 
@@ -71,7 +73,7 @@ class Workshop:
         """Levels of the chapter's own shader, with its gain over the chapter that chapter.json names."""
         def levels_of(number):
             plan = self.settings(LEVELS) | {"samples": grading.SCENES[chapter][0]}
-            return {case["scene"]: grading.level(case) for case in grading.render(number, own_shader(number), plan, grading.SCENES[chapter][1])}
+            return {case["scene"]: grading.level(case) for case in grading.render(Submission(number, own_shader(number)), plan, grading.SCENES[chapter][1])}
 
         levels = levels_of(chapter)
         if chapter in GAINS_OVER:
@@ -91,7 +93,7 @@ class Workshop:
     def shown(self, bug, expected, before):
         """What a mistake shows in experiments, as text with a number per point: brightness where it differs from the chapter's
         own, or if that is right everywhere, noise and rays. `before` has what earlier experiments have shown."""
-        with grading.replaced(bug.file, bug.text) as shaders:
+        with replaced(bug.file, bug.text) as shaders:
             facts, sights = observe(bug.chapter, self.settings(LEVELS) | {"shaders": shaders}, expected, lambda *_: True, MISTAKE_SEED)
         shows = before["shows"] | {name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right}
         if shows:
@@ -110,8 +112,8 @@ def to_digits(values, digits=4):
 
 def read_knowledge(chapters):
     """Chapter -> what is known about it, of those that were measured."""
-    files = {chapter: grading.expected_file(chapter) for chapter in chapters}
-    return {chapter: read_json(file) | {"mistakes": grading.known_mistakes(chapter)} for chapter, file in files.items() if file.exists()}
+    files = {chapter: expected_file(chapter) for chapter in chapters}
+    return {chapter: read_json(file) | {"mistakes": known_mistakes(chapter)} for chapter, file in files.items() if file.exists()}
 
 
 def planned_knowledge(chapters, before):
@@ -121,7 +123,7 @@ def planned_knowledge(chapters, before):
     for chapter in chapters:
         known = before.get(chapter, {})
         measured = level_digest(chapter)
-        entry = {"title": grading.DESCRIPTIONS[chapter]["title"], "measured": measured,
+        entry = {"title": DESCRIPTIONS[chapter]["title"], "measured": measured,
                  "levels": known["levels"] if known.get("measured") == measured else None, "experiments": {}, "mistakes": {}}
         digests = {name: experiment_digest(chapter, name) for name in experiments_of(chapter)}
         for name, now in digests.items():
@@ -153,9 +155,9 @@ def learn(workshop, chapters, is_anew, jobs):
 
     def write(chapter):
         with lock:
-            file = grading.expected_file(chapter)
-            write_json(file, {key: known for key, known in knowledge[chapter].items() if key != "mistakes"}, 2)
-            write_json(NOTEBOOK / "knowledge" / file.name, knowledge[chapter]["mistakes"], 1)
+            file = expected_file(chapter)
+            write_json(file, {key: known for key, known in knowledge[chapter].items() if key != "mistakes"})
+            write_json(NOTEBOOK / "knowledge" / file.name, knowledge[chapter]["mistakes"])
 
     def learn_levels(chapter):
         knowledge[chapter]["levels"] = workshop.levels(chapter)

@@ -14,14 +14,16 @@ from threading import Lock
 
 from check import grading
 from check.diagnosis import diagnose, verdict_with
+from check.expected import expected_file
 from check.experiments import experiments_of, known_sights, pictures, together
 from check.facts import readings
-from learning.learn import digest, own_text
+from check.submission import Submission
+from learning.learn import LEVELS, Workshop, digest, own_text
 from project import CHAPTERS, Parser, UserError, add_device_options, commit, number, read_json, write_json
 from report.batch import Batch, run_all
 from report.sources import code
-from tables.ages import stamped
 from tables.records import RECORDS
+from tables.sources import stamped
 
 GOES_ON = True
 SEED, PICTURES = 9001, 4  # of the second measurement, per point
@@ -29,15 +31,11 @@ AGREE = 3.5  # standard errors between two measurements of the same quantity
 ROUNDING = 0.005
 
 
-def settings(options, seed):
-    return {"backend": options.backend, "device": options.device, "time_limit": 600, "runs": grading.RUNS, "samples": None,
-            "first_seed": grading.first_seed(seed), "is_quiet": True}
-
-
-def untrue(chapter, file, found, those):
+def untrue(submission, found, those):
     """Numbers of wrong experiments that a second measurement contradicts: (experiment, point, number, second number)."""
-    known, contradicted = read_json(grading.expected_file(chapter))["experiments"], []
-    those = those | {"shaders": grading.replacements(CHAPTERS[chapter], file)}
+    chapter, contradicted = submission.chapter, []
+    known = read_json(expected_file(chapter))["experiments"]
+    those = those | {"shaders": submission.options}
     wrong = {name: experiments_of(chapter)[name].points for name, seen in found["readings"].items()
              if any(abs(value - 1) >= ROUNDING and value != 0 for _, value, _ in seen)}
     with Batch() as batch:
@@ -58,17 +56,17 @@ def measured(folder, seed):
 
 def grade(folder, options):
     says = read_json(folder / "submission.json")
-    file = next(folder.glob("*.glsl"))
-    those = settings(options, options.seed)
+    submission = Submission(says["chapter"], next(folder.glob("*.glsl")))
+    those = Workshop(options).settings(LEVELS | {"first_seed": grading.first_seed(options.seed)})
     started = time.monotonic()
-    result = grading.judge(says["chapter"], file, those)[0]
+    result = grading.judge(submission, those)[0]
     seconds = [round(time.monotonic() - started, 1)]
-    found = diagnose(says["chapter"], file, those, is_correct=result["verdict"] == "correct")
+    found = diagnose(submission, those, result["verdict"] == "correct")
     verdict = verdict_with(result["verdict"], found)
     row = {"chapter": says["chapter"], "is_right": says["is_right"], "mistake": says["mistake"], "means": says["means"], "verdict": verdict,
            "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "fits": found["fits"], "next": found["next"],
            "seconds": [*seconds, found["seconds"]], "measured": measured(folder, options.seed)}
-    return row | ({"untrue": untrue(says["chapter"], file, found, those)} if verdict != "correct" else {"untrue": []})
+    return row | ({"untrue": untrue(submission, found, those)} if verdict != "correct" else {"untrue": []})
 
 
 def main():
@@ -95,9 +93,9 @@ def main():
         with lock:
             record["submissions"][folder.name] = row | {key: before.get(key) if is_same else None for key in ("points", "name_is_right")}
             record.update({"commit": commit(), "submissions": dict(sorted(record["submissions"].items()))})
-            write_json(path, record, 3)
+            write_json(path, record)
 
     done = {} if options.anew else {name: row.get("measured") for name, row in record["submissions"].items()}
     run_all("submissions", grade_one, [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)], options.jobs)
     if options.anew and options.only == [""]:
-        write_json(path, stamped({name: record[name] for name in ("submissions", "commit")}), 3)
+        write_json(path, stamped({name: record[name] for name in ("submissions", "commit")}))

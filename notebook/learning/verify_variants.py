@@ -7,7 +7,9 @@ import time
 from pathlib import Path
 
 import numpy as np
-from check.grading import DESCRIPTIONS, SCENES, replacements
+from check.expected import DESCRIPTIONS
+from check.grading import SCENES
+from check.submission import Submission
 from course.mistakes import own_shader
 from learning.planting import variants
 from project import CHAPTERS, Parser, number, program_file, read_json, run_program, show_progress
@@ -56,7 +58,7 @@ def render(chapter, file, shader, scene, options, seeds):
     with tempfile.TemporaryDirectory() as folder:
         picture, report = Path(folder) / "a.exr", Path(folder) / "a.json"
         for seed in seeds:
-            command = [program_file(CHAPTERS[chapter]), scene, *replacements(CHAPTERS[chapter], file, shader), *options.split(), "--width", SIZE, "--height", SIZE, "--samples", samples_of(chapter),
+            command = [program_file(CHAPTERS[chapter]), scene, *Submission(chapter, file, shader).options, *options.split(), "--width", SIZE, "--height", SIZE, "--samples", samples_of(chapter),
                        "--seed", seed, "--output", picture, "--report", report, "--headless", "--quiet", "--backend", "compute"]
             ended = run_program(command)
             if ended.returncode != 0:

@@ -9,8 +9,8 @@ import tempfile
 import test_report
 from cited_tests import PROGRAMS, cited_tests, is_python, python_module
 from project import BINARIES, ROOT, Parser, UserError, write_json
-from tables.ages import stamped
 from tables.records import RECORDS
+from tables.sources import stamped
 
 def run_python(test):
     """Runs a command line test; returns what it recorded."""

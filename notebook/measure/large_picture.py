@@ -12,7 +12,7 @@ from pathlib import Path
 from statistics import median
 
 from project import CHAPTERS, ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 SMALL, LARGE = (64, 64), (3840, 2160)
 FILES = {"EXR": ["exr"], "PNG": ["png"], "EXR and PNG": ["exr", "png"]}
@@ -44,4 +44,4 @@ def main():
     seconds = {part: median(run[part] for run in found) for part in found[0]}
     start, rendering = seconds.pop("start"), report["rows"][-1]["seconds"]
     rows = {kind: {"seconds": whole, "beyond start and rendering": whole - start - rendering} for kind, whole in seconds.items()}
-    write_json(options.output, stamped({"device": report["device"], "samples": SAMPLES, "start": start, "rendering": rendering, "files": rows}), 2)
+    write_json(options.output, stamped({"device": report["device"], "samples": SAMPLES, "start": start, "rendering": rendering, "files": rows}))

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 CHAPTER, SHADER = "12_lens", "camera.glsl"
 JOINT = "get_joint_numbers(seed, on_aperture, in_pixel);"
@@ -50,4 +50,4 @@ def main():
                     runs.append(found)
                 show_progress("lens_points", len(rows) * options.runs + run + 1, len(APERTURES) * options.runs, started)
             rows.append({"aperture_diameter": aperture, **errors})
-    write_json(options.output, stamped({"device": device, "scene": "focus", "max_path_length": 1, "rows": rows}), 4)
+    write_json(options.output, stamped({"device": device, "scene": "focus", "max_path_length": 1, "rows": rows}))

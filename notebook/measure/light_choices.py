@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 CHAPTER, CHOICES = "14_many_lights", ("tree", "power", "uniform")
 SCENES, SIZE = ("lamps", "city", "heart_light", "cornell_box"), 256
@@ -39,4 +39,4 @@ def main():
                     numbers["seconds"].append(content["rows"][-1][seconds])
                 show_progress("light_choices", len(rows) * options.runs + run + 1, len(SCENES) * options.runs, started)
             rows.append({"scene": scene, **found})
-    write_json(options.output, stamped({"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}), 5)
+    write_json(options.output, stamped({"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}))

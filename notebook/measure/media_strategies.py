@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
-from tables.ages import stamped
+from tables.sources import stamped
 
 CHAPTER = "13_media"
 WAYS = {"both": [], "light": ["--strategy=light"], "bounces": ["--strategy=bounces"], "equiangular": ["--distance-sampling=equiangular"]}
@@ -40,4 +40,4 @@ def main():
                 show_progress("media_strategies", len(rows) * options.runs + run + 1, len(LIGHT) * options.runs, started)
             rows.append({"light": light, "mse_times_cpu_seconds": products})
         device = read_json(report)["device"]
-    write_json(options.output, stamped({"device": device, "scene": "fog", "rows": rows}), 4)
+    write_json(options.output, stamped({"device": device, "scene": "fog", "rows": rows}))

@@ -19,8 +19,10 @@ from threading import Lock
 
 from check import grading
 from check.diagnosis import is_deciding, is_noisy, observe
-from check.facts import BEYOND_DOUBT, TOLERANCE
+from check.expected import expected_file
 from check.experiments import experiments_of
+from check.facts import BEYOND_DOUBT, TOLERANCE
+from check.submission import Submission
 from course.handout import exercise_of, take_out
 from learning.learn import digest, own_text
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, course, name_of, number, read_json, text_of, write_json
@@ -131,12 +133,12 @@ def certainty(reading):
 
 def graded(chapter, text, settings, is_everything):
     """What ./lab check finds: the experiments that are wrong beyond doubt, and if none that decides is, the verdict on the pictures."""
-    shader = shader_of(chapter)
-    known = read_json(grading.expected_file(chapter))["experiments"]
-    try:
-        with grading.replaced(shader, text) as shaders:
-            chosen = (lambda *_: True) if is_everything else is_deciding
-            facts, sights = observe(chapter, settings | {"shaders": shaders, "time_limit": ENDLESS}, known, chosen)
+    known = read_json(expected_file(chapter))["experiments"]
+    with tempfile.TemporaryDirectory() as folder:
+        submission = Submission(chapter, Path(folder) / "mutation.glsl", shader_of(chapter))
+        submission.file.write_text(text, encoding="utf-8")
+        chosen = (lambda *_: True) if is_everything else is_deciding
+        facts, sights = observe(chapter, settings | {"shaders": submission.options, "time_limit": ENDLESS}, known, chosen)
         broken = [seen.sentence for seen in facts.values() if re.search(r"glsl:\d+: ", seen.sentence)]
         if broken:
             return {"compiles": False, "why": broken[0]}
@@ -146,13 +148,11 @@ def graded(chapter, text, settings, is_everything):
         deciding += [name for name, seen in sights.items() if is_noisy(facts[name].experiment, seen, known[name])]
         answer = {"compiles": True, "deciding": deciding, "wrong": wrong}
         if not deciding:
-            with tempfile.TemporaryDirectory() as folder:
-                file = Path(folder) / "mutation.glsl"
-                file.write_text(text, encoding="utf-8")
-                answer["verdict"] = grading.judge(chapter, file, settings, shader=shader)[0]["verdict"]
+            try:
+                answer["verdict"] = grading.judge(submission, settings)[0]["verdict"]
+            except UserError as error:
+                answer["verdict"] = f"not graded: {error}"
         return answer
-    except UserError as error:
-        return {"compiles": True, "deciding": [], "wrong": {}, "verdict": f"not graded: {error}"}
 
 
 def is_found(answer):
@@ -194,7 +194,7 @@ def main():
             with lock:
                 record[key] = answer
                 options.output.parent.mkdir(exist_ok=True)
-                write_json(options.output, record, 1)
+                write_json(options.output, record)
 
     run_all("mutations", grade, list(everything.items()), options.jobs)
     unchanged = read_json(UNCHANGED) if UNCHANGED.exists() else {}

@@ -14,7 +14,7 @@ from peers.renderers import python_of, renderer_of
 from project import Parser, UserError, chapter_named, number, read_json, scene_of, show_progress, write_json
 from references.images import find_references
 from report.measurement import Refused, digest_of_sources, new_case, run_case
-from tables.ages import stamped
+from tables.sources import stamped
 
 GOES_ON = True
 COUNTS = [16, 64, 256, 1024]  # samples of a pixel
@@ -98,6 +98,6 @@ def main():
                     raise UserError(f"{case['scene']}, {case['case']}: {refusal}") from None
                 case["refused"] = str(refusal)
             record = stamped(record)
-            write_json(options.record, record, 5)
+            write_json(options.record, record)
         show_progress(f"{case['scene']}, {case['case']}", done, len(steps), started)
     print(f"{options.record}: complete; ./lab notebook export shows what is in notebook/records")

@@ -13,7 +13,7 @@ from peers.renderers import CPU_VARIANTS, GPU_VARIANT, SAMPLERS
 from project import CHAPTERS, UserError, chapter_named
 from report.make import chosen, make_report, new_parser, settings_of
 from report.measurement import Measurement, driver_of, report_cases
-from tables.ages import stamped
+from tables.sources import stamped
 
 GOES_ON = True
 

@@ -4,11 +4,10 @@ from pathlib import Path
 
 from project import UserError, scene_of, table
 from report.numbers import errors, paired_ratio
-from tables.ages import when
 from tables.best_table import among_chapters
 from tables.cells import per_sample, with_interval, with_range
 from tables.cost_tables import seconds_text
-from tables.records import load_records
+from tables.records import load_records, when
 
 
 def kind_of(case):

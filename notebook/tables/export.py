@@ -7,7 +7,6 @@ import os
 
 from docs.tables import DOCS, PAGES, filled, write_pages
 from project import ROOT, Parser, UserError, read_json
-from tables.ages import record_table, when
 from tables.best_table import best_table
 from tables.chapter_tables import backend_table, chapter_tables, expected_table, headline_table, page_table
 from tables.confusion_table import confusion_table, submission_table
@@ -19,7 +18,7 @@ from tables.light_table import light_table
 from tables.media_table import media_table
 from tables.numerics import case_table, device_tables
 from tables.peer_table import peer_table
-from tables.records import NOTEBOOK, RECORDS, load_records
+from tables.records import NOTEBOOK, RECORDS, load_records, record_table, when
 from tables.renderer_table import renderer_table
 from tables.result_plots import PLOTS, is_fresh, short_device, write_plot
 

@@ -3,9 +3,11 @@ that pages can tell which numbers are older than the sources.
 
 Comments and blanks do not count, and neither do chapters that a record does not name: none of these changes a number.
 """
+import json
 import re
+from datetime import datetime
 
-from project import CHAPTERS, rendered_description, shaders_of
+from project import CHAPTERS, commit, rendered_description, shaders_of
 from report.sources import digest, files_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.
@@ -19,6 +21,14 @@ def measured(text):
     named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"(?<![a-z]){folder[3:]}(?![a-z])", text)}
     return {part: digest(files_of(folders)) for part, folders in parts.items()} | {
         name: digest(shaders_of(number), rendered_description(CHAPTERS[number])) for name, number in named.items()}
+
+
+def stamped(record):
+    """A record with a digest of what it measured, and with date and commit if it has none."""
+    told = record.setdefault("environment", {}) if "environment" in record else record
+    told.setdefault("commit", commit())
+    told.setdefault("date", datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"))
+    return record | {"measured": measured(json.dumps(record))}
 
 
 def changed_since(record):

@@ -1,10 +1,12 @@
-"""The C++ of the notebook is laid out as clang-format 14 does it, like that of the course."""
+"""The C++ of the notebook is laid out as clang-format 14 does it, like that of the course, and records have a row a line."""
 
 import shutil
 import subprocess
 import unittest
 
-from paths import PROJECT
+from paths import PROJECT  # first: it finds the others
+from project import json_rows, read_json
+from tables.records import RECORDS
 
 
 class FormatTest(unittest.TestCase):
@@ -16,6 +18,7 @@ class FormatTest(unittest.TestCase):
         self.assertGreater(len(files), 5)
         subprocess.run([program, "--dry-run", "-Werror", *files], check=True)
 
-
-if __name__ == "__main__":
-    unittest.main()
+    def test_records_have_a_row_a_line(self):
+        for file in RECORDS.glob("*/*.json"):
+            with self.subTest(record=file.relative_to(RECORDS)):
+                self.assertTrue(file.read_text(encoding="utf-8") == json_rows(read_json(file)) + "\n", "./lab notebook ages --stamp FILE lays it out")

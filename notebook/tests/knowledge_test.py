@@ -86,7 +86,3 @@ class ConfusionTest(unittest.TestCase):
                 self.assertGreaterEqual(rate.among / rate.found, 0.9 if condition == "new seeds" else 0.8, condition)
         own = rates(self.record())["new seeds"]
         self.assertGreaterEqual(own.fitting / own.found, 0.9, "in all numbers, if the shader is the one that was measured")
-
-
-if __name__ == "__main__":
-    unittest.main()

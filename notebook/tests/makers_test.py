@@ -1,6 +1,5 @@
 """./lab notebook assets: the meshes, textures and light probes in assets/ are what its formulas give."""
 
-import unittest
 from unittest import mock
 
 import paths  # noqa: F401  (first: it finds the others)
@@ -25,7 +24,3 @@ class AssetsTest(ProgramTest):
                 self.assertEqual(self.run_here(make.main)[0], 0)
                 self.assertEqual(file.read_text(encoding="utf-8"), "v 0 0 0\n")
                 self.assertEqual(self.run_here(make.main, "--check")[0], 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -40,7 +40,3 @@ class MutationsTest(unittest.TestCase):
         found = {(text[begin:end].strip(), replacement.strip()) for begin, end, replacement in mutations.changes(text)}
         self.assertLessEqual({("a = b * f(x, 2.0) - c;", ";"), ("*", "/"), ("-", "+"), ("* f(x, 2.0)", ""), ("b *", ""), ("2.0", "4.0"),
                               ("x, 2.0", "2.0, x"), ("(!d)", "(!(!d))"), ("!", ""), ("if (!d) break;", ";")}, found)
-
-
-if __name__ == "__main__":
-    unittest.main()

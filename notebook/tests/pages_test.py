@@ -27,7 +27,3 @@ class PagesTest(unittest.TestCase):
                 self.assertIn(option, options, f"{page}: {question}")
         answered = {question for page, question, _ in named if page == PAGES[0]}
         self.assertEqual(sorted(set(QUESTIONS) - answered - {"peer"}), [], "README.md names every question; `peer` is a part of one")
-
-
-if __name__ == "__main__":
-    unittest.main()

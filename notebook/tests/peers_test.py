@@ -115,7 +115,3 @@ class CommandTest(unittest.TestCase):
         self.assertEqual({len(case["runs"]) for case in cases}, {3})
         ours = [[row["samples"] for row in case["runs"][0]["rows"]] for case in cases if not case["is_peer"]]
         self.assertEqual(ours, [counts for counts, *_ in compare.SCENES.values()])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 
 import json
 import sys
-import unittest
 
 import paths  # noqa: F401  (first: it finds the others)
 from program import BINARIES, PROJECT, ProgramTest
@@ -99,7 +98,3 @@ class ReportTest(ProgramTest):
         rows = cpu_table(record).splitlines()
         self.assertRegex(rows[0], r", \d+ cores, llvmpipe.*, and ")
         self.assertEqual(len(rows), 4 + len(cases))
-
-
-if __name__ == "__main__":
-    unittest.main()

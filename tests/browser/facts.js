@@ -1,6 +1,7 @@
 // What a page finds in films and experiments from the standard input, as JSON: node facts.js LIVE_FOLDER. See live_facts_test.py.
 "use strict";
 const fs = require("fs");
+globalThis.live = {};
 require(`${process.argv[2]}/facts.js`);
 
 const { experiments, films, rules } = JSON.parse(fs.readFileSync(0, "utf8"));

@@ -2,6 +2,7 @@
 // defines}]}. `texts` replaces or adds sources. A job of which the translation itself fails gets the message as its text.
 "use strict";
 const fs = require("fs");
+globalThis.live = {};
 for (const name of ["preprocessor", "layout", "glsl"]) require(`${process.argv[2]}/${name}.js`);
 
 const { sources, jobs } = JSON.parse(fs.readFileSync(0, "utf8"));

@@ -1,6 +1,7 @@
 // The live verdicts of a page on films from the standard input, as JSON: node verdict.js LIVE_FOLDER. See browser_verdict_test.cpp.
 "use strict";
 const fs = require("fs");
+globalThis.live = {};
 require(`${process.argv[2]}/verdict.js`);
 
 const { reference, films } = JSON.parse(fs.readFileSync(0, "utf8"));

@@ -9,11 +9,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import unittest
 from pathlib import Path
 
 from image_files import Exr
-from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest
+from program import BINARIES, UNOPTIMISED, ProgramTest, copy_project
 
 SOURCE, COPY = "03_next_event_estimation", "20_light_choice"
 # Replaces the copy's estimator: a colour that no other chapter shows.
@@ -56,12 +55,8 @@ class Tree:
     def setUp(self):
         super().setUp()
         self.tree = self.folder / "lab"
-        for name in ("chapters", "shaders", "tools", "docs"):
-            shutil.copytree(PROJECT / name, self.tree / name)
-        for name in ("CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab", "README.md", ".clang-format"):
-            shutil.copy(PROJECT / name, self.tree / name)
-        for name in ("common", "assets", "tests"):
-            (self.tree / name).symlink_to(PROJECT / name)
+        copy_project(self.tree, "docs", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab", "README.md", ".clang-format",
+                     linked=("common", "assets", "tests"))
         self.chapter = self.tree / "chapters" / COPY
         shutil.copytree(self.tree / "chapters" / SOURCE, self.chapter)
 
@@ -208,7 +203,3 @@ class AddedChapter_all(Tree, ProgramTest):
         shutil.copy(BINARIES / "dump_arrays", binaries)
         self.run_in_tree(sys.executable, "-B", "tools", "book", "--output", self.folder / "book", LAB_BINARIES=str(binaries))
         self.assertTrue((self.folder / "book/chapters" / COPY / "index.html").is_file())
-
-
-if __name__ == "__main__":
-    unittest.main()

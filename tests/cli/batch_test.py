@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 from unittest import mock
 
 from image_files import Exr
@@ -163,7 +162,3 @@ class BatchTest(ProgramTest):
         self.assertEqual(next(found), (-9, ""))
         with self.assertRaises(UserError):
             self.run_in(batch, "picture")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from tools_path import PROJECT, TOOLS  # first: it finds the others
 from book import live
-from course.mistakes import bugs_of, complete, plant, records, shader_of
+from course.mistakes import complete, plant, records, shader_of
 from project import CHAPTERS, course, read_json, shaders_of, text_of
 
 NODE, VALIDATOR = shutil.which("node"), shutil.which("glslangValidator")
@@ -127,7 +127,3 @@ class ShadersInBrowserTest(unittest.TestCase):
         for wrong in ("float x = 1;", "float y = 2.0 * 3;", 'float ω = 1.0;', '#include "missing.glsl"'):
             text = f"{text_of(PROJECT / file)}\n{wrong}\n"
             self.assertEqual(len(self.errors([(1, wrong, {file: text})], ["lamps"])), 1, wrong)
-
-
-if __name__ == "__main__":
-    unittest.main()

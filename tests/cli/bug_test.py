@@ -149,7 +149,3 @@ class SanitizedBug_all(Bugs, ProgramTest):
         self.assertIn(finding, out)
         out = self.bug(chapter, index, "--samples", 4, "--scene", "microfacets_5", "--backend", "compute")
         self.assertRegex(out, r"verdict +nothing shows")
-
-
-if __name__ == "__main__":
-    unittest.main()

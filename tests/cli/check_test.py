@@ -49,21 +49,21 @@ class Checking:
             patch.start()
             self.addCleanup(patch.stop)
 
-    def judge_once(self, chapter, file, settings, watch, ends_early):  # noqa: ARG002 (the next format may need all runs)
+    def judge_once(self, submission, settings, watch, ends_early):  # noqa: ARG002 (the next format may need all runs)
         """judge(), but renders a shader only once for all formats in which the command reports the same verdict."""
-        key = (file.read_bytes(), *grading.SCENES[chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
+        key = (submission.file.read_bytes(), *grading.SCENES[submission.chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
         if key not in self.judged:
             early = []
-            self.judged[key] = (*grading.judge(chapter, file, settings, watch=lambda cases: early.append(deepcopy(cases))), early)
+            self.judged[key] = (*grading.judge(submission, settings, watch=lambda cases: early.append(deepcopy(cases))), early)
         result, pictures, early = deepcopy(self.judged[key])
         for cases in early:
             watch(cases)
-        return result | {"file": project.printable(file)}, pictures
+        return result | {"file": submission.name}, pictures
 
-    def diagnose_once(self, chapter, file, settings, is_correct):
-        key = (file.read_bytes(), is_correct, settings["first_seed"])
+    def diagnose_once(self, submission, settings, is_correct):
+        key = (submission.file.read_bytes(), is_correct, settings["first_seed"])
         if key not in self.judged:
-            self.judged[key] = diagnosis.diagnose(chapter, file, settings, is_correct=is_correct)
+            self.judged[key] = diagnosis.diagnose(submission, settings, is_correct)
         return deepcopy(self.judged[key])
 
     def check(self, *arguments):
@@ -207,7 +207,7 @@ class CheckTest(Checking, ProgramTest):
         self.write("all/abe.glsl", ENDLESS)
         self.judge.reset_mock()
         self.assertEqual(self.check(*grade_all, "--time-limit", 1)[0], 2)
-        self.assertEqual([call.args[1].stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew")
+        self.assertEqual([call.args[0].file.stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew")
         rows = {row["submission"]: row for row in self.graded()}
         self.assertEqual({name: row["verdict"] for name, row in rows.items()}, expected | {"abe": "not graded"})
         self.assertRegex(rows["abe"]["error"], "ended after 1 s|device")
@@ -362,7 +362,3 @@ class LaterChapters_all(Checking, ProgramTest):
         scene = json.loads(out)["scenes"][0]
         self.assertEqual((code, scene["verdict"]), (1, "noisy"), scene["noise"])
         self.assertLess(scene["most_noise"], grading.TOO_MUCH)
-
-
-if __name__ == "__main__":
-    unittest.main()

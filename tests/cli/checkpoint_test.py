@@ -5,13 +5,12 @@ import math
 import random
 import re
 import resource
-import shutil
 import signal
 import time
 from pathlib import Path
 
 from image_files import Exr, relative_mse
-from program import BINARIES, MERGE, PROJECT, QUAD_JSON, QUAD_MTL, QUAD_OBJ, UNOPTIMISED, RenderTest
+from program import BINARIES, MERGE, QUAD_JSON, QUAD_MTL, QUAD_OBJ, UNOPTIMISED, RenderTest, copy_project
 
 
 class Interruption(RenderTest):
@@ -224,13 +223,8 @@ class EditedShaders(RenderTest):
 
     def setUp(self):
         super().setUp()
-        tree = self.folder / "tree"
-        for name in ("chapters", "shaders"):
-            shutil.copytree(PROJECT / name, tree / name)
-        (tree / "assets").symlink_to(PROJECT / "assets")
-        (tree / "bin").mkdir()
-        self.tree = tree
-        self.program = shutil.copy(BINARIES / "05_russian_roulette", tree / "bin")
+        self.tree = self.folder / "tree"
+        self.program = copy_project(self.tree, program=BINARIES / "05_russian_roulette")
 
     def render_range(self, name, first, *arguments):
         command = self.command("--samples=2", "--quiet", f"--first-sample={first}", f"--output={name}.exr", *arguments)

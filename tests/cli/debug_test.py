@@ -7,11 +7,10 @@ import signal
 import subprocess
 import sys
 import tempfile
-import unittest
 from pathlib import Path
 from unittest import mock
 
-from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
+from program import BINARIES, PROJECT, ProgramTest, copy_project  # first: it finds the tools
 from check import command as check_command
 from debug import command
 from project import CHAPTERS
@@ -32,12 +31,7 @@ class CopiedLab:
         if not re.search(r"native +works", devices):
             self.skipTest("no device has the backend native")
         self.tree = self.folder / "lab"
-        for name in ("chapters", "shaders", "tools"):
-            shutil.copytree(PROJECT / name, self.tree / name)
-        for name in ("assets", "common"):
-            (self.tree / name).symlink_to(PROJECT / name)
-        (self.tree / "build/bin").mkdir(parents=True)
-        self.program = shutil.copy(program, self.tree / "build/bin")
+        self.program = copy_project(self.tree, program=program)
         self.shader = self.tree / SHADER
 
     def plant(self, text):
@@ -347,7 +341,3 @@ class NativeFailures_all(CopiedLab, ProgramTest):
         native, compute = self.render().stderr, self.render(backend="compute").stderr
         self.assertIn("path_trace.glsl:8: 'nothing' : undeclared identifier", native)
         self.assertEqual(native.splitlines()[0], compute.splitlines()[0])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,13 +10,15 @@ from pathlib import Path
 from unittest import mock
 
 import tools_path  # noqa: F401  (first: it finds the others)
-from check import diagnosis, grading
+from check import diagnosis, expected, grading
 from check.diagnosis import reason, right_ones
 from check.experiments import Experiment, Point, Sight, experiment, experiment_files, experiments_of, faces_of, merged, write_scene
 from check.facts import DARK, fact
 from check.findings import LONGEST, findings, shortened
-from check.grading import RUNS, expected_file, first_seed
+from check.expected import expected_file, known_mistakes
+from check.grading import RUNS, first_seed
 from check.names import names_of, similar_to
+from check.submission import Submission
 from check.words import MARGIN, MOST_FACTS, headline, hint_lines, laid_out, smallest_bias
 from course.mistakes import catalogue
 from project import chapter_named, course, read_json
@@ -134,7 +136,7 @@ class FindingsTest(unittest.TestCase):
         expected = {name: {} for name in facts}
         with mock.patch.object(diagnosis, "write_scene", side_effect=lambda scene, folder, name: grading.ROOT / f"{name}.json"), \
                 mock.patch.object(diagnosis, "known_sights", return_value=[sight(0.5)] * 3):
-            self.assertIn("light_1.json", diagnosis.next_step(3, Path("mine.glsl"), facts, sights, expected))
+            self.assertIn("light_1.json", diagnosis.next_step(Submission(3, Path("mine.glsl")), facts, sights, expected))
 
     def test_light_where_none_should_be_and_what_is_no_number_are_not_forgotten(self):
         invalid = fact(Experiment("x", "light of a lamp", "", [Point({}, "a")]), [Sight(1.0, 0.1, 1.0, 0.1, 2.0, invalid=3)], [sight(1.0)])
@@ -182,13 +184,13 @@ class SecondLookTest(unittest.TestCase):
             return {"scene": case["scene"], "verdict": verdict, "invalid_samples": 0,
                     "image": [{"is_biased": off >= 9, "value": -0.01 * off, "half_width": 0.01}]}
 
-        def render(chapter, file, settings, scenes=None, *_, **__):
+        def render(_, settings, scenes=None, **__):
             made.append((scenes, settings["first_seed"]))
             return [{"scene": scene, "picture": None, "runs": [{}] * settings["runs"]} for scene in scenes or self.LEVELS]
 
         made, plan = [], {"first_seed": 1, "runs": RUNS, "samples": None}
         with mock.patch.object(grading, "render", render), mock.patch.object(grading, "grade", grade):
-            result = grading.judge(3, Path("mine.glsl"), plan, self.LEVELS)[0]
+            result = grading.judge(Submission(3, Path("mine.glsl")), plan, self.LEVELS)[0]
         self.assertIsNone(next(results, None))
         self.assertEqual((result["runs"], [scene["scene"] for scene in result["scenes"]]), (RUNS, list(self.LEVELS)))
         self.assertEqual(made[0], (None, 1))
@@ -437,8 +439,8 @@ class ExpectedTest(unittest.TestCase):
 
     def test_without_the_notebook_facts_have_no_names(self):
         facts = {"angle": seen([2.0] * 3)}
-        with mock.patch.object(grading, "KNOWLEDGE", Path("/nowhere")):
-            known = {"experiments": {}, "mistakes": grading.known_mistakes(3)}
+        with mock.patch.object(expected, "KNOWLEDGE", Path("/nowhere")):
+            known = {"experiments": {}, "mistakes": known_mistakes(3)}
         with mock.patch.object(diagnosis, "next_step"):
             found = reason(facts, {}, known, False)
         self.assertEqual((found["mistakes"], found["fits"]), ([], False))
@@ -455,7 +457,3 @@ class DecidingExperiments(unittest.TestCase):
     def test_noise_counts_where_an_experiment_is_about_it(self):
         self.assertEqual([self.verdict_with_noise(factor) for factor in (1.4, 2.0)], ["correct", "noisy"])
         self.assertEqual(self.verdict_with_noise(2.0, is_of_noise=False), "correct")
-
-
-if __name__ == "__main__":
-    unittest.main()

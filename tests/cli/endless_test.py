@@ -75,7 +75,3 @@ class EndlessTest(CopiedLab, ProgramTest):
             _, err = process.communicate(timeout=300)
         self.assertRegex(err, rf"\Aerror: \S+{SHADER}:3: this loop, or one around it, does not end[^\n]*\n\Z")
         self.assertFalse((self.folder / "a.exr").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

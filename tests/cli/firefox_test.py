@@ -8,7 +8,6 @@ import signal
 import subprocess
 import threading
 import unittest
-from pathlib import Path
 
 from book_test import Site  # first: it finds the others
 import numpy as np
@@ -81,7 +80,3 @@ class Firefox_all(Site, ProgramTest):
                 self.assertLessEqual(different, MOST_DIFFERENT * len(pixels))
             seen.add(chapter)
         self.assertEqual(seen, {CHAPTERS[number] for number in course()})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from program import CHAPTER, PROJECT, ProgramTest, RenderTest  # first: it finds the tools
 import numpy as np
-from check.grading import replaced
+from check.submission import replaced
 from docs import figures, first_steps
 from PIL import Image
 from project import read_json

@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import unittest
 from pathlib import Path
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
@@ -97,7 +96,3 @@ class GradingTest(ProgramTest):
         for script in (GRADING / "gradescope").iterdir():
             subprocess.run(["bash", "-n", script], check=True)
             self.assertTrue(os.access(script, os.X_OK), script)
-
-
-if __name__ == "__main__":
-    unittest.main()

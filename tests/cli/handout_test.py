@@ -7,10 +7,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import unittest
 from pathlib import Path
 
-from program import BINARIES, PROJECT, TOOLS, ProgramTest
+from program import BINARIES, PROJECT, TOOLS, ProgramTest, copy_project
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
 EXERCISES = {name: json.loads((PROJECT / "chapters" / name / "chapter.json").read_text(encoding="utf-8"))["exercise"] for name in CHAPTERS}
@@ -118,12 +117,7 @@ class HandoutTest(ProgramTest):
 
     def copied_project(self):
         project = self.folder / "project"
-        for name in ("chapters", "shaders", "tools", "docs"):
-            shutil.copytree(PROJECT / name, project / name)
-        for name in ("assets", "common"):
-            (project / name).symlink_to(PROJECT / name)
-        for name in (".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"):
-            shutil.copy(PROJECT / name, project / name)
+        copy_project(project, "docs", ".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab")
         return project
 
     def test_sources_may_have_the_encoding_of_windows(self):
@@ -213,7 +207,3 @@ Another is code of chapter 7.
             result = self.handout(*arguments)
             self.assertEqual(result.returncode, 1)
             self.assertRegex(result.stderr, r"\Aerror: [^\n]{12,}\n\Z")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,10 +1,9 @@
 """An infinite or NaN sample: the program counts, displays and reports it."""
 
 import json
-import shutil
 
 from image_files import Exr, read_png
-from program import CHAPTER, MERGE, PROJECT, RenderTest
+from program import CHAPTER, MERGE, RenderTest, copy_project
 
 
 class Poison(RenderTest):
@@ -16,8 +15,7 @@ class Poison(RenderTest):
     def setUp(self):
         super().setUp()
         tree = self.folder / "poisoned"
-        for name in ("shaders", "chapters"):
-            shutil.copytree(PROJECT / name, tree / name)
+        self.poisoned = copy_project(tree, program=CHAPTER)  # which looks for the shaders in parent folders
         shader = tree / "shaders/engine/sample_loop.glsl"
         text = shader.read_text(encoding="utf-8")
         call = "finish_sample(path_trace(ray, seed));"
@@ -27,10 +25,6 @@ class Poison(RenderTest):
         vec3 radiance = path_trace(ray, seed);
         finish_sample(is_poisoned ? vec3(0.5, uintBitsToFloat(0x7fc00000u), 0.5) : radiance);"""
         shader.write_text(text.replace(call, poisoned), encoding="utf-8")
-        # Programs look for the shaders in parent folders.
-        self.poisoned = tree / "bin" / CHAPTER.name
-        self.poisoned.parent.mkdir()
-        shutil.copy(CHAPTER, self.poisoned)
 
     def render_to(self, name, *arguments, program=CHAPTER, samples=samples):
         """Renders to NAME.exr and more; returns that file and all that the program printed."""

@@ -20,8 +20,8 @@ WRITES_AT_MOST = """(() => {
 class LiveDevicesTest(LivePages, unittest.TestCase):
     def lose(self, losses=0, restores=True):
         """Takes the GPU away, as if that had happened so many times without a picture between."""
-        self.frame(f"(frame.losses = {losses}, (window.loss ??= frame.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())")
-        self.wait("frame.renderer.gl.isContextLost() && !frame.renderings.length", "the loss")
+        self.frame(f"(frame.picture.losses = {losses}, (window.loss ??= frame.picture.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())")
+        self.wait("frame.picture.renderer.gl.isContextLost() && !frame.picture.renderings.length", "the loss")
         self.frame("(frame.film = null, 0)")
         if restores:
             self.frame("window.loss.restoreContext()")
@@ -83,7 +83,7 @@ class LiveDevicesTest(LivePages, unittest.TestCase):
                      "if (seed.x % 4096u == 0u) while (true) { radiance.r += 0.0; }"):
             self.edit(right, f"{right} {loop}")
             self.assertRegex(self.error(), r"path_trace\.glsl:\d+: this loop does not end")
-            self.assertFalse(self.frame("frame.renderer.gl.isContextLost()"))
+            self.assertFalse(self.frame("frame.picture.renderer.gl.isContextLost()"))
             self.edit(f"{right} {loop}", right)
             self.wait("!frame.editor.error.textContent && frame.film", "the picture")
 
@@ -93,38 +93,34 @@ class LiveDevicesTest(LivePages, unittest.TestCase):
         self.click("Pause")
         self.edit(BLACK, "vec3 radiance = vec3(0.5);")
         self.assertIn("press Go on", self.frame("frame.note.textContent"))
-        self.wait("frame.numbers.textContent.startsWith('paused')", "a paused picture")
+        self.wait("frame.picture.numbers.textContent.startsWith('paused')", "a paused picture")
         self.click("Go on")
         self.wait("frame.film", "a picture")
         self.edit("vec3(0.5);", "vec3(0.5)")
         self.error()
-        self.assertEqual(self.frame("frame.numbers.textContent"), "")
+        self.assertEqual(self.frame("frame.picture.numbers.textContent"), "")
 
     def test_a_frame_out_of_view_pauses(self):
         self.start(3)
         self.wait("frame.film", "a picture")
         self.frame("(frame.root.style.marginTop = '5000px', scrollTo(0, 0))")
         self.wait("!frame.isVisible", "the frame to be out of view")
-        samples = self.frame("frame.renderings[0].rendering.samples")
+        samples = self.frame("frame.picture.renderings[0].rendering.samples")
         time.sleep(2)
-        self.assertLessEqual(self.frame("frame.renderings[0].rendering.samples"), 2 * samples)
-        samples = self.frame("frame.renderings[0].rendering.samples")
+        self.assertLessEqual(self.frame("frame.picture.renderings[0].rendering.samples"), 2 * samples)
+        samples = self.frame("frame.picture.renderings[0].rendering.samples")
         time.sleep(2)
-        self.assertEqual(self.frame("frame.renderings[0].rendering.samples"), samples)
+        self.assertEqual(self.frame("frame.picture.renderings[0].rendering.samples"), samples)
         self.frame("frame.root.scrollIntoView()")
-        self.wait(f"frame.renderings[0].rendering.samples > {samples}", "more samples")
+        self.wait(f"frame.picture.renderings[0].rendering.samples > {samples}", "more samples")
 
     def test_a_hidden_tab_pauses(self):
         self.start(3, before="Object.defineProperty(document, 'hidden', { get: () => window.isHidden, configurable: true })")
         self.wait("frame.film", "a picture")
         self.browser.evaluate("window.isHidden = true")
         time.sleep(1)
-        samples = self.frame("frame.renderings[0].rendering.samples")
+        samples = self.frame("frame.picture.renderings[0].rendering.samples")
         time.sleep(2)
-        self.assertEqual(self.frame("frame.renderings[0].rendering.samples"), samples)
+        self.assertEqual(self.frame("frame.picture.renderings[0].rendering.samples"), samples)
         self.browser.evaluate("window.isHidden = false")
-        self.wait(f"frame.renderings[0].rendering.samples > {samples}", "more samples")
-
-
-if __name__ == "__main__":
-    unittest.main()
+        self.wait(f"frame.picture.renderings[0].rendering.samples > {samples}", "more samples")

@@ -49,7 +49,3 @@ class LiveFactsTest(unittest.TestCase):
             self.assertTrue(np.allclose([other["mean"], other["error"], other["invalid"]], [sight.mean, sight.error, sight.invalid], rtol=1e-9))
         sight, other = together([look(image, report, SAMPLES) for image in images]), found["together"]
         self.assertTrue(np.allclose([other["mean"], other["error"], other["invalid"]], [sight.mean, sight.error, sight.invalid], rtol=1e-9))
-
-
-if __name__ == "__main__":
-    unittest.main()

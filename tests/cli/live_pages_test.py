@@ -56,7 +56,7 @@ class LivePages(Site):
             editor.open(editor.files.find(file => editor.texts[file].includes({json.dumps(old)})));
             const {{ field }} = editor;
             field.value = field.value.replace({json.dumps(old)}, {json.dumps(new)});
-            field.dispatchEvent(new Event("input")); frame.stopRenderings(); frame.film = frame.latest = null; }})()""")
+            field.dispatchEvent(new Event("input")); frame.picture.stop(); frame.film = frame.latest = null; }})()""")
 
     def error(self):
         self.wait("frame.editor.error.textContent", "an error")
@@ -104,7 +104,7 @@ class LivePagesTest(LivePages, unittest.TestCase):
 
     def test_the_keyboard_stays_in_the_frame(self):
         self.start(3)
-        self.assertTrue(self.frame("document.activeElement === frame.scene"))
+        self.assertTrue(self.frame("document.activeElement === frame.controls.scene"))
         self.frame("(frame.editor.tabs.lastChild.focus(), frame.editor.tabs.lastChild.click())")
         self.assertTrue(self.frame("document.activeElement === frame.editor.tabs.lastChild && document.activeElement.getAttribute('aria-selected') === 'true'"))
 
@@ -129,21 +129,21 @@ class LivePagesTest(LivePages, unittest.TestCase):
 
     def test_the_chapter_before_has_the_same_time(self):
         self.start(3)
-        self.frame("(frame.compared.checked = true, frame.restart(), 0)")
-        self.wait("/^After the same time, left chapter 3: .*; right chapter 2: /.test(frame.caption.textContent)", "both chapters")
-        self.frame("frame.line.focus()")
-        times = self.frame("frame.renderings.map(({ rendering }) => rendering.busy)")
+        self.frame("(frame.controls.compared.checked = true, frame.restart(), 0)")
+        self.wait("/^After the same time, left chapter 3: .*; right chapter 2: /.test(frame.picture.caption.textContent)", "both chapters")
+        self.frame("frame.picture.line.focus()")
+        times = self.frame("frame.picture.renderings.map(({ rendering }) => rendering.busy)")
         self.assertLess(max(times), 1.5 * min(times))
         for kind in ("keyDown", "keyUp"):
             self.browser.call("Input.dispatchKeyEvent", type=kind, key="ArrowRight", code="ArrowRight", windowsVirtualKeyCode=39)
-        self.assertEqual(self.frame("frame.line.value"), "51")
+        self.assertEqual(self.frame("frame.picture.line.value"), "51")
         self.assert_no_complaints()
 
     def test_the_view_of_surfaces_gives_no_verdict(self):
         self.start(3)
-        self.frame("(frame.view.value = 'NORMALS', frame.viewChanged())")
+        self.frame("(frame.controls.view.value = 'NORMALS', frame.viewChanged())")
         self.wait("frame.film && frame.verdict.textContent.includes('surfaces')", "normals")
-        self.frame("(frame.view.value = 'picture', frame.viewChanged())")
+        self.frame("(frame.controls.view.value = 'picture', frame.viewChanged())")
         self.wait("frame.latest?.verdict && frame.verdict.textContent.startsWith('agrees')", "the picture again")
 
     def test_fits_a_phone(self):
@@ -211,7 +211,3 @@ class LivePages_all(LivePages, unittest.TestCase):
         self.assertTrue(any(re.match(r"light in the glowing ball after two bounces: 2\.0\d ± 0\.0\d times as bright as it should be \(as by a factor 2\), whatever the albedo", fact)
                             for fact in facts), facts)
         self.assertFalse(any(fact.startswith("light of a lamp after one bounce") for fact in facts), facts)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -110,7 +110,3 @@ class LiveTextsTest(LivePages, unittest.TestCase):
             self.frame(f"frame.plant(frame.about.bugs[{number}])")
             self.assertEqual(self.frame("frame.editor.edited.length"), 1, f"bug {number + 1}")
             self.assertNotIn("// TODO", self.frame("Object.values(frame.editor.texts).join()"))
-
-
-if __name__ == "__main__":
-    unittest.main()

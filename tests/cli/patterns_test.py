@@ -54,7 +54,3 @@ class PatternsTest(unittest.TestCase):
                 child.kill()
                 self.fail(f"{start!r}: {child.communicate()[0].splitlines()[-1]}")
             self.assertEqual(child.returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,6 +5,7 @@ import os
 import pty
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -57,6 +58,18 @@ def open_terminal():
         return pty.openpty()
     except OSError as error:
         raise unittest.SkipTest(f"no pseudo-terminals here: {error}") from error
+
+
+def copy_project(tree, *others, linked=("assets", "common"), program=None):
+    """Copies what students change, and other files and folders, with links to what they do not; returns the place of a copied program."""
+    for name in ("chapters", "shaders", "tools", *others):
+        (shutil.copytree if (PROJECT / name).is_dir() else shutil.copy)(PROJECT / name, tree / name)
+    for name in linked:
+        (tree / name).symlink_to(PROJECT / name)
+    if program:
+        (tree / "build/bin").mkdir(parents=True)
+        return shutil.copy(program, tree / "build/bin")
+    return None
 
 
 class Program(subprocess.Popen):

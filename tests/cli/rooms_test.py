@@ -66,7 +66,3 @@ class RoomsTest(unittest.TestCase):
 
     def test_the_picture_shows_what_is_included(self):
         self.assertTrue(rooms.picture() == rooms.DIAGRAM.read_text(encoding="utf-8"), "run `python3 tools rooms`")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,10 +3,9 @@
 import re
 import shutil
 import sys
-import unittest
 from unittest import mock
 
-from program import BINARIES, PROJECT, TOOLS, UNOPTIMISED, ProgramTest  # first: it finds the tools
+from program import BINARIES, TOOLS, UNOPTIMISED, ProgramTest, copy_project  # first: it finds the tools
 import mistake
 import numpy as np
 from lesson import sample, sample_plots
@@ -69,12 +68,7 @@ class SampleTest(ProgramTest):
     def test_a_copy_shows_its_own_sampler(self):
         """By its number, in the folder of a student's copy: its points, right or wrong."""
         tree = self.folder / "lab"
-        for name in ("chapters", "shaders", "tools"):
-            shutil.copytree(PROJECT / name, tree / name)
-        for name in ("assets", "common"):
-            (tree / name).symlink_to(PROJECT / name)
-        (tree / "build/bin").mkdir(parents=True)
-        shutil.copy(BINARIES / "sample_points", tree / "build/bin")
+        copy_project(tree, program=BINARIES / "sample_points")
         for number, replace, chance in ((20, "2.0 * PI * u.x - PI", "which is chance"), (21, "1.5 * PI * u.x - PI", "too large for chance")):
             copy = shutil.copytree(tree / "chapters/02_cosine_sampling", tree / f"chapters/{number}_mine")
             shader = copy / "sample_hemisphere.glsl"

@@ -64,7 +64,3 @@ class ShaderPageTest(unittest.TestCase):
                 call.write_text(call.read_text(encoding="utf-8") + "float quarter(float x) { return 0.5 * get_half(x); }\n", encoding="utf-8")
                 with self.assertRaisesRegex(UserError, r"^shaders/world/frame\.glsl: 'float get_half\(float x\)' has no comment: "):
                     shader_table.shader_tables()
-
-
-if __name__ == "__main__":
-    unittest.main()

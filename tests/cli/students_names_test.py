@@ -150,7 +150,3 @@ class StudentsNamesTest(StudentsPage, ProgramTest):
         for declaration, name in (("struct Film { float x; };", "Film"), ("vec3 positions(vec3 p) { return p; }", "positions"), ("float materials[2];", "materials")):
             text = f"{declaration}\nvec3 path_trace(Ray ray, inout uvec2 seed) {{ return vec3(1.0); }}\n"
             self.assertRegex(self.error(text), f"^FILE:1: '{name}' : redefinition")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,12 +4,12 @@ import csv
 import json
 import os
 import shutil
-import unittest
 from pathlib import Path
 from unittest import mock
 
 from program import PROJECT, ProgramTest  # first: it finds the tools
-from check import command, folder, grading
+from check import command, folder
+from check.submission import Submission, replacement
 from project import CHAPTERS, UserError, course, read_json
 
 FEW = (3, "--runs", 5, "--samples", 4, "--backend", "compute")
@@ -42,7 +42,7 @@ class Submissions:
 
     def tree(self, chapter, file):
         """Name -> text of the shaders that a check reads instead of the chapter's own."""
-        given = grading.replacements(CHAPTERS[chapter], file)
+        given = Submission(chapter, file).options
         self.assertEqual(given[::2], ["--shader"] * (len(given) // 2))
         return {Path(place).name: Path(source).read_text(encoding="utf-8") for place, _, source in (text.partition("=") for text in given[1::2])}
 
@@ -79,10 +79,10 @@ class GradedTogether(Submissions, ProgramTest):
         for chapter, name, helper in ((9, "random_words.glsl", "scramble_reversed"), (11, "sample_normal.glsl", None)):
             text = (chapter_folder(chapter) / name).read_text(encoding="utf-8")
             mine = self.write("anna.glsl", text.replace(helper, "my_scramble") if helper else text)
-            self.assertEqual(grading.shader_like(CHAPTERS[chapter], mine).name, name)
+            self.assertEqual(Submission(chapter, mine).shader.name, name)
         estimator = self.write("bob.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    return vec3(0.0);\n}\n")
         for chapter in course():
-            self.assertEqual(grading.shader_like(CHAPTERS[chapter], estimator).name, "path_trace.glsl")
+            self.assertEqual(Submission(chapter, estimator).shader.name, "path_trace.glsl")
 
     def test_a_shader_that_a_chapter_includes_from_another_is_known_by_name_or_functions(self):
         """The others in its folder belong to that chapter. Chapter 13 has a file of the same name in its own folder, with one function more."""
@@ -95,15 +95,15 @@ class GradedTogether(Submissions, ProgramTest):
                     self.write("anna.glsl", text.replace("add_light", "my_add"))]
             for file in mine:
                 with self.subTest(chapter=chapter, file=file):
-                    given = grading.replacements(CHAPTERS[chapter], file)
-                    self.assertEqual(given[-2:], grading.replacement(original, file))
+                    given = Submission(chapter, file).options
+                    self.assertEqual(given[-2:], replacement(original, file))
                     self.assertTrue(len(given) == 2 or chapter == place[0], given)
 
     def test_a_new_file_beside_an_estimator_replaces_what_it_has_the_name_of(self):
         copy = self.copy_chapter(10, "10_mine")
         shutil.copy(chapter_folder(7) / "extend_path.glsl", copy)
         for file in ("path_trace.glsl", "extend_path.glsl"):
-            self.assertIn(f"{CHAPTERS[7]}/extend_path.glsl={copy / 'extend_path.glsl'}", grading.replacements(CHAPTERS[10], copy / file))
+            self.assertIn(f"{CHAPTERS[7]}/extend_path.glsl={copy / 'extend_path.glsl'}", Submission(10, copy / file).options)
 
     def test_a_file_with_no_function_of_the_chapter_is_refused_with_the_names_that_are_known(self):
         for file in (chapter_folder(6) / "dielectric.glsl", self.write("anna.glsl", "float half_of(float x) {\n    return 0.5 * x;\n}\n")):
@@ -146,7 +146,8 @@ class WholeClass(Submissions, ProgramTest):
         """Submission -> row of the table, and the name of the file that was graded below its folder, if any."""
         graded = {}
 
-        def check(_, file, picture):
+        def check(_, submission, picture):
+            file = submission.file
             graded[picture.stem] = str(file.relative_to(self.folder / "all"))
             if "unreadable" in file.read_text(encoding="utf-8"):
                 raise UserError("does not compile")
@@ -207,7 +208,3 @@ class WholeClass(Submissions, ProgramTest):
             self.assertEqual(list(folder.submissions(self.folder / "all", self.folder / "all/graded")), ["anna"])
             (self.folder / "all/graded").mkdir()
             self.assertEqual(list(folder.submissions(self.folder / "all", self.folder / "all/graded")), ["anna"])
-
-
-if __name__ == "__main__":
-    unittest.main()

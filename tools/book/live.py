@@ -26,7 +26,7 @@ from check.grading import expected_file
 from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
 
 HERE = Path(__file__).parent / "live"
-SCRIPTS = ["preprocessor.js", "layout.js", "glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "check.js", "report.js", "page.js"]
+SCRIPTS = ["preprocessor.js", "layout.js", "glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "plot.js", "controls.js", "picture.js", "check.js", "report.js", "page.js"]
 RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
 MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
 REPORT = "report"
@@ -228,7 +228,7 @@ def write(folder, frames):
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
-    (folder / "sources.js").write_text(f"var live = globalThis.live ?? {{}};\nlive.data = {{}};\nlive.sources = {literal(texts)};\n"
+    (folder / "sources.js").write_text(f"var live = {{data: {{}}}};\nlive.sources = {literal(texts)};\n"
                                        f"live.chapters = {literal(chapters)};\n", encoding="utf-8")
     for name in [*SCRIPTS, "live.css"]:
         (folder / name).write_text(without_comments((HERE / name).read_text(encoding="utf-8")), encoding="utf-8")

@@ -19,12 +19,14 @@ import tempfile
 import traceback
 from pathlib import Path
 
-from check.formats import as_gradescope, as_github
 from check.diagnosis import diagnose, verdict_with
 from check.folder import UNGRADED, grade_all
-from check.grading import DESCRIPTIONS, MOST_RUNS, RUNS, SCENES, first_seed, graded_together, judge, stay_in_the_driver
+from check.formats import as_gradescope, as_github
+from check.expected import DESCRIPTIONS
+from check.grading import MOST_RUNS, RUNS, SCENES, first_seed, judge, stay_in_the_driver
+from check.submission import Submission
 from check.words import detail_lines, hints_of, laid_out, scene_words, short_lines, tell_early
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable, text_of
+from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable
 from report.measurement import relative
 
 POINTS = 10
@@ -68,22 +70,19 @@ def refuse(options):
         raise UserError("--all grades a folder into results.csv: leave out the file and the form of the output")
 
 
-def check(options, file, picture=None):
+def check(options, submission, picture=None):
     """Returns the result of a check; raises UserError if there is none. Incorrect shaders always get a picture, others only if
     `picture` is a file for it."""
-    if not file.is_file():
-        raise UserError(f"{printable(file)}: " + ("a folder: name one of its files, or take --all" if file.is_dir() else "no such file"))
     watch = (lambda cases: None) if options.is_quiet or options.folder else tell_early
     settings = vars(options) | {"first_seed": first_seed(options.seed)}
     # Points are given for each scene, so each takes all runs.
-    result, pictures = judge(options.chapter, file, settings, watch=watch, ends_early=options.form != "gradescope")
+    result, pictures = judge(submission, settings, watch=watch, ends_early=options.form != "gradescope")
     is_correct = result["verdict"] == "correct"
-    unfinished = None if is_correct else find_todo(graded_together(CHAPTERS[options.chapter], file))
-    result |= {"unfinished_file": unfinished and printable(relative(unfinished[0])), "unfinished_line": unfinished and unfinished[1]}
+    result["unfinished_file"], result["unfinished_line"] = (None, None) if is_correct else submission.first_todo()
     if not result["unfinished_line"]:
-        found = diagnose(options.chapter, file, settings, is_correct=is_correct)
+        found = diagnose(submission, settings, is_correct)
         if result["runs"] < options.runs and not found["is_beyond_doubt"]:
-            judged, pictures = judge(options.chapter, file, settings)
+            judged, pictures = judge(submission, settings)
             result |= judged
         result["diagnosis"] = found
         result["verdict"] = verdict_with(result["verdict"], result["diagnosis"])
@@ -99,15 +98,6 @@ def check(options, file, picture=None):
             path = draw(result, pictures, Path(tempfile.mkdtemp()) / name)
         result["picture"] = relative(path)
     return result
-
-
-def find_todo(files):
-    """The first line with a TODO, as (file, number), or None."""
-    for file in files:
-        lines = text_of(file).splitlines()
-        if number := next((number for number, line in enumerate(lines, 1) if "TODO" in line), None):
-            return file, number
-    return None
 
 
 def report(options, result):
@@ -139,7 +129,9 @@ def main():
         options.chapter = original(options.chapter)
         if options.folder:
             sys.exit(grade_all(options, check))
-        result = check(options, file)
+        if not file.is_file():
+            raise UserError(f"{printable(file)}: " + ("a folder: name one of its files, or take --all" if file.is_dir() else "no such file"))
+        result = check(options, Submission(options.chapter, file))
     except SystemExit as end:  # by the parser
         if isinstance(end.code, str):
             print(end.code, file=sys.stderr)

@@ -6,9 +6,10 @@ assets/expected records what the chapter's own shader shows in each, and the not
 import time
 
 from check.experiments import experiments_of, known_sights, pictures, together, write_scene
+from check.expected import DESCRIPTIONS, expected_file, known_mistakes
 from check.facts import SURE, Fact, fact, readings
 from check.findings import findings, shortened
-from check.grading import DESCRIPTIONS, TOO_MUCH, expected_file, first_seed, known_mistakes, replacements, with_names_of
+from check.grading import TOO_MUCH, first_seed
 from check.names import names_of, ratios_of, similar_to
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from report.batch import Batch
@@ -110,24 +111,24 @@ def is_noisy(experiment, sights, expected):
     return experiment.is_of_noise and any((noise - SURE * error) * min(rays, 1) > TOO_MUCH for (noise, error), (rays, _) in pairs)
 
 
-def next_step(chapter, file, facts, sights, expected):
+def next_step(submission, facts, sights, expected):
     """How the student can see the first fact that is told: writes a scene file and returns it in a command, with the value to expect."""
     seen = next((seen for finding in findings(facts.values()) for seen in finding.facts if seen.readings), None)
     if not seen:
         return None
     name = seen.experiment.name
     worst = max(range(len(seen.readings)), key=lambda i: seen.readings[i].evidence)
-    point, folder = seen.experiment.points[worst], ROOT / f"output/check_{chapter}"
+    point, folder = seen.experiment.points[worst], ROOT / f"output/check_{submission.chapter}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         scene = write_scene(point.scene, folder, name)
     except OSError:  # in a read-only checkout, for instance
         return None
-    copy = next((number for number, name in CHAPTERS.items() if file.resolve().parent == ROOT / "chapters" / name), None)
+    copy = next((number for number, name in CHAPTERS.items() if submission.file.resolve().parent == ROOT / "chapters" / name), None)
     where = "" if copy else ", with your shader in the chapter's folder"
     colour = ("red", "green", "blue")[point.channel] + " " if point.channel is not None else ""
     values = f"{sights[name][worst].mean:.3g} instead of {known_sights(expected[name])[worst].mean:.3g}"
-    return f"{f'./lab run {copy or chapter} {scene.relative_to(ROOT)} {point.options}'.rstrip()} shows {colour}{values}{where}"
+    return f"{f'./lab run {copy or submission.chapter} {scene.relative_to(ROOT)} {point.options}'.rstrip()} shows {colour}{values}{where}"
 
 
 def reason(facts, sights, known, is_correct):
@@ -146,15 +147,15 @@ def reason(facts, sights, known, is_correct):
             "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}
 
 
-def diagnose(chapter, file, settings, shader=None, is_correct=False):
-    """What experiments show about a shader, see reason(). If its pictures are correct, only those run that can decide as well."""
-    known, started = read_json(expected_file(chapter)) | {"mistakes": known_mistakes(chapter)}, time.monotonic()
-    settings = settings | {"shaders": replacements(CHAPTERS[chapter], file, shader)}
-    facts, sights = observe(chapter, settings, known["experiments"], is_deciding if is_correct else is_called_for)
+def diagnose(submission, settings, is_correct=False):
+    """What experiments show about a submission, see reason(). If its pictures are correct, only those run that can decide as well."""
+    chapter, started = submission.chapter, time.monotonic()
+    known = read_json(expected_file(chapter)) | {"mistakes": known_mistakes(chapter)}
+    facts, sights = observe(chapter, settings | {"shaders": submission.options}, known["experiments"], is_deciding if is_correct else is_called_for)
     for seen in facts.values():
-        seen.sentence = with_names_of(file, seen.sentence)
+        seen.sentence = submission.in_words(seen.sentence)
     return reason(facts, sights, known, is_correct) | {
-        "next": next_step(chapter, file, facts, sights, known["experiments"]), "seconds": round(time.monotonic() - started, 1)}
+        "next": next_step(submission, facts, sights, known["experiments"]), "seconds": round(time.monotonic() - started, 1)}
 
 
 def verdict_with(verdict, diagnosis):

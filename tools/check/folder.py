@@ -11,7 +11,8 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
-from check.grading import DESCRIPTIONS, graded_together, known_mistakes
+from check.expected import DESCRIPTIONS, known_mistakes
+from check.submission import Submission
 from check.words import detail_lines, headline, laid_out, questions, short_lines
 from project import CHAPTERS, ROOT, UserError, course, printable, read_json, write_json
 from report.measurement import digest_of_sources
@@ -39,21 +40,21 @@ def submissions(folder, output):
     return dict(sorted(found.items()))
 
 
-def shader_of(submission, chapter):
-    """The file to be graded of a submission. In a folder it is the exercise's shader, or else the only one."""
-    if not submission.is_dir():
-        return submission
+def shader_of(path, chapter):
+    """The file to be graded of what was handed in. In a folder it is the exercise's shader, or else the only one."""
+    if not path.is_dir():
+        return path
     wanted = DESCRIPTIONS[chapter].get("exercise", {}).get("file", "path_trace.glsl")  # a student's tree does not say it
 
     def distance(file):  # some hand in the whole tree
         return file.name != wanted, file.parent.name != CHAPTERS[chapter], len(file.parts)
 
-    files = sorted(file for file in submission.rglob("*.glsl") if file.is_file() and not file.name.startswith(NO_SUBMISSION))
+    files = sorted(file for file in path.rglob("*.glsl") if file.is_file() and not file.name.startswith(NO_SUBMISSION))
     shaders = sorted(files, key=distance)
     if not shaders:
         raise UserError(f"has no shader: {wanted} is missing")
     if len(shaders) > 1 and distance(shaders[0]) == distance(shaders[1]):
-        names = " and ".join(printable(file.relative_to(submission)) for file in shaders[:2])
+        names = " and ".join(printable(file.relative_to(path)) for file in shaders[:2])
         raise UserError(f"has {len(shaders)} shaders, such as {names}: which one is {wanted}?")
     return shaders[0]
 
@@ -64,22 +65,22 @@ def sources_of(chapter):
     return digest_of_sources([]), hashlib.sha256(json.dumps(known_mistakes(chapter)).encode()).hexdigest()
 
 
-def digest(options, file):
-    """A digest of a shader and everything it is graded with: results with the same digest are kept."""
+def digest(options, submission):
+    """A digest of a submission and everything it is graded with: results with the same digest are kept."""
     settings = [sources_of(options.chapter), options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
-    shaders = {printable(each.name): each.read_bytes().hex() for each in graded_together(CHAPTERS[options.chapter], file)}
-    return hashlib.sha256(json.dumps([settings, file.name, shaders]).encode()).hexdigest()
+    shaders = {printable(each.name): each.read_bytes().hex() for each in submission.files}
+    return hashlib.sha256(json.dumps([settings, submission.file.name, shaders]).encode()).hexdigest()
 
 
-def grade_one(options, check, name, submission, folder, known):
+def grade_one(options, check, name, path, folder, known):
     """The row of a submission, which is the known one if that has the same digest."""
     started, key = time.monotonic(), None
     try:
-        file = shader_of(submission, options.chapter)
-        key = digest(options, file)
+        submission = Submission(options.chapter, shader_of(path, options.chapter))
+        key = digest(options, submission)
         if known and known["digest"] == key and known["verdict"] != "not graded":
             return known
-        result = check(options, file, folder / f"{name}.png")
+        result = check(options, submission, folder / f"{name}.png")
         found = result["diagnosis"] or {"facts": [], "mistakes": [], "fits": False}
         fitting = found["mistakes"] if found["fits"] else []
         row = {"verdict": headline(result)[0], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
@@ -146,9 +147,9 @@ def grade_all(options, check):
     record = folder / "results.json"
     known = read_json(record) if record.exists() else {}
     rows, found = [], submissions(options.folder, folder)
-    for done, (name, submission) in enumerate(found.items(), 1):
+    for done, (name, path) in enumerate(found.items(), 1):
         options.what = f"{done} of {len(found)}, {name}: "
-        row = grade_one(options, check, name, submission, folder, known.get(name))
+        row = grade_one(options, check, name, path, folder, known.get(name))
         if row is not known.get(name):
             known[name] = row
             write_json(record, known)

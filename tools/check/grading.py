@@ -4,22 +4,20 @@ Means of the whole image and of its tiles are tested against the reference. Erro
 chapter's own shader, which are recorded in assets/expected.
 """
 import os
-import re
 import tempfile
 import threading
 import time
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, shaders_of, show_progress, text_of
+from check.expected import DESCRIPTIONS, expected_file
+from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
-from report.measurement import new_case, relative, run_case
+from report.measurement import new_case, run_case
 from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
-DESCRIPTIONS = {number: description(folder) for number, folder in CHAPTERS.items()}
 # Per chapter: samples of a run, and references that show what its shader can do.
 SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says}
 # Roulette from the first bounce on and with a cap that matters, since otherwise both hardly show. With a lower cap few samples
@@ -53,97 +51,6 @@ def first_seed(seed):
     return seed * SEED_STEP + 1
 
 
-def expected_file(chapter):
-    """What the chapter's own shader shows, or that of the chapter that this one copies: levels and experiments."""
-    return ROOT / "assets/expected" / f"{CHAPTERS[original(chapter)]}.json"
-
-
-def known_mistakes(chapter):
-    """What each mistake of the catalogue shows in the experiments. The notebook learns it; without the notebook mistakes have no names."""
-    file = KNOWLEDGE / expected_file(chapter).name
-    return read_json(file) if file.exists() else {}
-
-
-def functions_in(shader):
-    return set(re.findall(r"^\w+ (\w+)\(", text_of(shader), re.MULTILINE))
-
-
-def graded_together(chapter, file):
-    """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is this chapter, a copy of it
-    or a new one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
-    title = description(file.parent.resolve())["title"] if (file.parent / "chapter.json").exists() else None
-    others = {says["title"] for number, says in DESCRIPTIONS.items() if expected_file(number).exists()} - {description(chapter)["title"]}
-    if title in others or not (title or (ROOT / "chapters" / chapter / file.name).exists()):
-        return [file]
-    return [*(other for other in sorted(file.parent.glob("*.glsl")) if other.is_file() and other.name != file.name), file]
-
-
-def with_most_functions_of(file, shaders):
-    """Number of functions that the file has in common with one of these, and that shader: the first one of several."""
-    counted = [(len(functions_in(file) & functions_in(shader)), shader) for shader in shaders]
-    return max(counted, key=lambda pair: pair[0], default=(0, None))
-
-
-def shader_named(chapter, file):
-    """The chapter's shader with the file's name, or None. Some only include one with the same name of another chapter: then the one whose
-    functions the file has."""
-    return with_most_functions_of(file, [shader for shader in shaders_of(int(chapter[:2])) if shader.name == file.name])[1]
-
-
-def shader_like(chapter, file):
-    """The shader that a file is graded as, in a chapter's folder or included from that of another chapter. It is one of the folder whose
-    functions the file all defines, preferably the estimator; or else the one with its name; a new one beside an estimator; or the one with
-    most of its functions. Other estimators than the chapter's may have a function or two in common with any."""
-    estimator, functions = ROOT / "chapters" / chapter / "path_trace.glsl", functions_in(file)
-    folder = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
-    for shader in folder:
-        if functions_in(shader) and functions >= functions_in(shader):
-            return shader
-    if named := shader_named(chapter, file):
-        return named
-    if estimator.name in {other.name for other in graded_together(chapter, file)}:
-        return estimator.with_name(file.name)
-    count, shader = with_most_functions_of(file, [*folder, *shaders_of(int(chapter[:2]))])
-    if "path_trace" in functions and count < 2:
-        return estimator
-    if not count:
-        names = ", ".join(shader.name for shader in folder)
-        raise UserError(f"{printable(relative(file))}: defines no function of chapter {int(chapter[:2])}'s shaders; name it like the one that it "
-                        f"replaces: {names}")
-    return shader
-
-
-def replacement(shader, file):
-    """Options with which a program reads a file instead of a chapter's shader."""
-    return ["--shader", f"{shader.parent.name}/{shader.name}={os.path.abspath(file)}"]
-
-
-def replacements(chapter, file, shader=None):
-    """Options with which a chapter's program reads `file`, and what belongs to it, instead of its own shaders."""
-    *others, _ = graded_together(chapter, file)
-    own = {shader_named(chapter, other) or ROOT / "chapters" / chapter / other.name: other for other in others}
-    places = own | {shader or shader_like(chapter, file): file}
-    # What the chapter neither has nor may bring is included by these files only, and found beside them.
-    replaceable = {Path(name).name for name in read_json(ROOT / "shaders/replaceable.json")}
-    return [word for place, source in places.items() if place.exists() or place.name in replaceable
-            for word in replacement(place, source)]
-
-
-@contextmanager
-def replaced(shader, text):
-    """Options with which a program reads this text instead of a chapter's shader."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / shader.name
-        file.write_text(text, encoding="utf-8")
-        yield replacement(shader, file)
-
-
-def with_names_of(file, text):
-    """A text in which this file, and those beside it, have names as the user wrote them."""
-    folder = f"{Path(os.path.abspath(file)).parent.as_posix()}/"
-    return text.replace(printable(folder), printable(relative(file).removesuffix(file.name)))
-
-
 def regions(image):
     """Means of red, green and blue over the whole image [3], and of all channels over its tiles [rows * columns]."""
     tiles = averaged(image.mean(axis=2, keepdims=True), TILE)
@@ -164,14 +71,14 @@ def reference_regions(file):
     return {"mean": regions(reference.mean), "variance": variance, "freedom": reference.freedom}
 
 
-def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shader=None):
+def render(submission, settings, scenes=None, watch=lambda cases: None):
     """Cases with their runs, each a row with the means of the regions. `settings`: backend, device, time_limit, memory_limit,
     runs, samples, first_seed, is_quiet, and what the progress begins with; `scenes` are names of references; `watch` is called after the
     first EARLY_RUNS and returns whether they are enough."""
-    samples, own_scenes = SCENES[chapter]
+    chapter, (samples, own_scenes) = submission.chapter, SCENES[submission.chapter]
     samples, started = settings["samples"] or samples, time.monotonic()
     with tempfile.TemporaryDirectory() as folder, Batch() as batch:
-        settings = settings | {"shaders": replacements(CHAPTERS[chapter], file, shader)}
+        settings = settings | {"shaders": submission.options}
         cases = [new_case(*pair, f"chapter {chapter}", CHAPTERS[chapter], OPTIONS[chapter])
                  for pair in find_references(scenes or own_scenes)]
         for case in cases:
@@ -207,7 +114,7 @@ def render(chapter, file, settings, scenes=None, watch=lambda cases: None, shade
                 if done == EARLY_RUNS * len(cases) < len(work) and watch(cases):
                     break
         except UserError as error:
-            raise UserError(with_names_of(file, str(error))) from None
+            raise UserError(submission.in_words(str(error))) from None
     for case in cases:
         case["picture"] = case["picture"] / len(case["runs"])
     return cases
@@ -290,12 +197,12 @@ def doubtful(results):
                                         if result["verdict"] in ("biased", "noisy") or any(map(is_near, result["image"]))]
 
 
-def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases: None, shader=None, ends_early=False):
+def judge(submission, settings, levels=None, watch=lambda cases: None, ends_early=False):
     """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. What is in doubt
     is rendered again, with other seeds, which decide alone: so a correct shader that was doubted is refused no more often than any other.
     With `ends_early` it takes EARLY_RUNS alone if a picture is off as a whole in them: experiments should confirm that, for all of so few
     runs may lack the same bright paths."""
-    levels = levels or read_levels(chapter)
+    levels = levels or read_levels(submission.chapter)
 
     def graded(cases, is_second_look=False):
         return [grade(case, levels[case["scene"]], len(cases), is_second_look) for case in cases]
@@ -305,13 +212,13 @@ def judge(chapter, file, settings, levels=None, scenes=None, watch=lambda cases:
         return ends_early and is_sure(graded(cases))
 
     first_seed = settings["first_seed"]
-    cases = render(chapter, file, settings, scenes, is_enough, shader)
+    cases = render(submission, settings, watch=is_enough)
     seen = {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
     if again := doubtful([result for _, result in seen.values()]):
-        cases = render(chapter, file, settings | {"first_seed": first_seed + settings["runs"]}, again, shader=shader)
+        cases = render(submission, settings | {"first_seed": first_seed + settings["runs"]}, again)
         seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases, is_second_look=True))}
     cases, results = zip(*seen.values())
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": chapter, "file": printable(relative(file)), "verdict": verdict, "runs": min(len(case["runs"]) for case in cases),
-            "samples": settings["samples"] or SCENES[chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
+    return {"chapter": submission.chapter, "file": submission.name, "verdict": verdict, "runs": min(len(case["runs"]) for case in cases),
+            "samples": settings["samples"] or SCENES[submission.chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
             "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": list(results)}, [case["picture"] for case in cases]

@@ -15,7 +15,8 @@ import time
 from pathlib import Path
 
 import numpy as np
-from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH, replaced
+from check.grading import OPTIONS, SCENES, TILE, TOO_MUCH
+from check.submission import replaced
 from check.words import percent
 from course.mistakes import bugs_of
 from lesson import diff

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from book.code_blocks import take_out
-from check.grading import known_mistakes
+from check.expected import known_mistakes
 from course.pages import clean_pages
 from package.make import pack
 from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, description, number, run_to_end, show_progress, text_of, write_json
@@ -48,9 +48,9 @@ def write_handout(chapter, folder):
         shutil.rmtree(path) if path.is_dir() else path.unlink()
     for name in kept:  # the names of mistakes give them away
         numbered = {str(i): seen for i, seen in enumerate(known_mistakes(int(name[:2])).values(), 1)}
-        write_json(folder / KNOWLEDGE.relative_to(ROOT) / f"{name}.json", numbered, 1)
+        write_json(folder / KNOWLEDGE.relative_to(ROOT) / f"{name}.json", numbered)
         told = {key: value for key, value in description(name).items() if key not in ("exercise", "tests")}
-        write_json(folder / "chapters" / name / "chapter.json", told, 2)
+        write_json(folder / "chapters" / name / "chapter.json", told, width=132)
     exercise = exercise_of(chapter)
     shader = folder / "chapters" / CHAPTERS[chapter] / exercise["file"]
     text, solution = take_out(text_of(shader), exercise)

@@ -16,15 +16,6 @@ from report.numbers import Series
 from report.plots import COLOURS, QUALITY, encode_srgb, right_and_wrong, save_figure, sheet, style_axis, svg_text
 
 
-def plot(path, size, draw, **labels):
-    """A plot with logarithmic axes; draw(axis) fills it."""
-    figure, axis = pyplot.subplots(figsize=size, layout="constrained")
-    draw(axis)
-    style_axis(axis, xscale="log", yscale="log", **labels)
-    axis.legend(frameon=False, fontsize=9)
-    save_figure(figure, path)
-
-
 # ---------------------------------------------------------------------------------------------- of renders
 TONES = {"srgb": encode_srgb, "linear": lambda image: image, "relative": lambda image: encode_srgb(image / image.max())}
 
@@ -150,12 +141,12 @@ def one_over_root_n(folder, renders):
     integral, sizes = playground.integrals[0], 2 ** np.arange(15)
     terms = integral.terms(sample.draw(playground, 2**20, 0, 1))
     errors = mean_errors(terms, integral.value(1), sizes)
-
-    def draw(axis):
-        axis.plot(sizes, errors, "o", color=COLOURS[0], label=f"error of {integral.formula}")
-        axis.plot(sizes, terms.std() / np.sqrt(sizes), color=COLOURS[4], label="standard deviation of f(u) / √N")
-
-    plot(folder / "one_over_root_n.png", (6, 4), draw, xlabel="N", ylabel="root mean squared error")
+    figure, axis = pyplot.subplots(figsize=(6, 4), layout="constrained")
+    axis.plot(sizes, errors, "o", color=COLOURS[0], label=f"error of {integral.formula}")
+    axis.plot(sizes, terms.std() / np.sqrt(sizes), color=COLOURS[4], label="standard deviation of f(u) / √N")
+    style_axis(axis, xscale="log", yscale="log", xlabel="N", ylabel="root mean squared error")
+    axis.legend(frameon=False, fontsize=9)
+    save_figure(figure, folder / "one_over_root_n.png")
 
 
 @on_any_ground

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from check.grading import OPTIONS, SCENES, replaced
+from check.grading import OPTIONS, SCENES
+from check.submission import replaced
 from course.bug import new_render
 from docs import figure_plots, first_steps, tables
 from docs.bug_blocks import GALLERY, find_bug

@@ -5,7 +5,6 @@ try:
     import drjit as dr
     import mitsuba as mi
     import numpy as np
-    from references.bsdfs import define_bsdfs
 except ImportError as error:
     raise UserError(f"{error}: this needs Mitsuba 3: `pip install mitsuba`, in a virtual environment that is active here") from None
 
@@ -45,7 +44,7 @@ def make_bsdf(surface, own_normals):
         return {"type": "null"}
     if material.roughness > 0 and material.refractive_index > 0:
         bsdf = {"type": "rough_glass", "alpha": material.roughness,
-                "facets": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
+                "nested": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
                            "int_ior": material.refractive_index, "ext_ior": 1.0}}
     elif material.roughness > 0:
         bsdf = {"type": "twosided", "nested": {
@@ -194,7 +193,7 @@ def run_mitsuba(variant, work):
         if variant == "llvm_ad_rgb" and dr.detail.llvm_version()[0] < 19:  # Mitsuba would abort
             raise UserError("LLVM is older than 19: install libllvm19 and let DRJIT_LIBLLVM_PATH name its library")
         mi.set_log_level(mi.LogLevel.Error)
-        define_bsdfs()
+        import references.bsdfs  # noqa: F401 (registers them; their base class needs the variant)
         work()
     except (RuntimeError, ImportError) as error:
         while error.__cause__:  # the innermost one says what is wrong

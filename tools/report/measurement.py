@@ -113,14 +113,9 @@ def measure_large(case, rows, picture):
     rows[-1]["rel_mse"] = rel_mse(averaged(read_rgb(picture), case["scale"]), read_reference(ROOT / case["reference_file"]))
 
 
-def devices_text(chapter):
-    """The chapter's list of this machine's devices."""
-    return run_program([program_file(chapter), "--list-devices"]).stdout
-
-
 def driver_of(program, device):
     """Kind of the device, Vulkan's version and the driver."""
-    found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", devices_text(program), re.MULTILINE)
+    found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", run_program([program_file(program), "--list-devices"]).stdout, re.MULTILINE)
     return found[1] if found else "unknown"
 
 

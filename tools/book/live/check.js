@@ -1,7 +1,5 @@
 // The check of a page: verdicts on the scenes of ./lab check, then the facts that its experiments show.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.check = (() => {
     const { element } = live, FIRST_VERDICT = 16, REPEATS = 3;
@@ -9,16 +7,15 @@ live.check = (() => {
     const table = rows => element("table", {}, ...rows.map(row => element("tr", {}, ...row.map(cell => element("td", {}, cell)))));
 
     // The names of the scenes and their verdicts, one after the other; null if the reader does something else.
-    async function verdicts(frame, most) {
+    async function verdicts(frame) {
         const { checked, pictures, samples } = frame.about, rows = [], enough = Math.max(samples, FIRST_VERDICT);
         for (const name of checked) {
             const picture = pictures.find(p => p.name === name), started = performance.now();
             if (!picture) { rows.push([name, "is too large for a page: ./lab check renders it"]); continue; }
-            frame.scene.value = pictures.indexOf(picture);
-            frame.errors = [];
+            frame.controls.scene.value = pictures.indexOf(picture);
             let last;
-            const target = () => last?.verdict?.samples >= enough ? 0 : most;
-            const done = await frame.renderPicture(picture, target, (film, reference, verdict) => {
+            const target = () => last?.verdict?.samples >= enough ? 0 : live.Picture.MOST_SAMPLES;
+            const done = await frame.picture.render(picture, target, (film, reference, verdict) => {
                 if (!film.rays) throw new Error("the shader traces no ray: there is nothing to check");
                 last = verdict;
                 frame.show(film, reference, verdict, started);
@@ -33,15 +30,15 @@ live.check = (() => {
     // What the shader shows at a point of an experiment. What looks wrong is rendered again with other random numbers.
     async function sightOf(frame, experiment, point, { scenes, rules }, pace) {
         const sights = [];
-        const place = frame.renderer.layout.offsetOf("RenderParameters", "seed_key");
+        const { picture } = frame, place = picture.renderer.layout.offsetOf("RenderParameters", "seed_key");
         const isWrong = () => !live.facts.fact(experiment, experiment.points.map(each => each === point ? live.facts.together(sights) : each), rules).isRight;
         do {
             const parameters = Uint32Array.from(point.parameters);
             parameters[place] ^= Math.imul(sights.length, 0x9e3779b9);
-            const state = await frame.prepare({ scene: scenes[point.scene], parameters, options: point.options }, frame.editor.sources), { rendering } = state;
-            frame.renderings = [state];
+            const state = await picture.prepare({ scene: scenes[point.scene], parameters, options: point.options }, frame.editor.sources), { rendering } = state;
+            picture.renderings = [state];
             let film;
-            const done = await rendering.render({ target: () => point.samples, isPaused: () => document.hidden, look: latest => { frame.checkLoops(latest, state); film = latest; } }, pace);
+            const done = await rendering.render({ target: () => point.samples, isPaused: () => document.hidden, look: latest => { picture.checkLoops(latest, state); film = latest; } }, pace);
             rendering.stop();
             if (!done) return null;
             sights.push(live.facts.look(film, point.channel));
@@ -51,24 +48,25 @@ live.check = (() => {
 
     // The facts of all experiments whose conditions are met; null if the reader does something else.
     async function factsOf(frame) {
-        const known = await live.rendering.loadData(frame.root.dataset.folder, `experiments_${frame.chapter}`), facts = {}, { turn } = frame;
+        const known = await live.rendering.loadData(frame.root.dataset.folder, `experiments_${frame.chapter}`), facts = {};
+        const { picture, picture: { turn, numbers } } = frame;
         const { experiments, rules } = known, pace = { rows: 8, step: 1 };
         for (const [i, experiment] of experiments.entries()) {
             if (!Object.entries(experiment.when).every(([name, isRight]) => !(name in facts) || facts[name].isRight === isRight)) continue;
             const sights = [];
             for (const point of experiment.points) {
-                frame.numbers.textContent = `experiment ${i + 1} of ${experiments.length}: ${experiment.subject}`;
+                numbers.textContent = `experiment ${i + 1} of ${experiments.length}: ${experiment.subject}`;
                 sights.push(await sightOf(frame, experiment, point, known, pace));
-                if (turn !== frame.turn || !sights.at(-1)) return null;
+                if (turn !== picture.turn || !sights.at(-1)) return null;
             }
             facts[experiment.name] = { experiment, ...live.facts.fact(experiment, sights, rules) };
         }
-        frame.numbers.textContent = "";
+        numbers.textContent = "";
         return Object.values(facts);
     }
 
-    return async (frame, most) => {
-        const rows = await verdicts(frame, most);
+    return async frame => {
+        const rows = await verdicts(frame);
         if (!rows) return;
         const tell = (...texts) => frame.results.replaceChildren(element("p", {}, element("strong", {}, texts[0]), ...texts.slice(1)), table(rows));
         const isBiased = rows.some(([, text]) => text.startsWith("biased"));

@@ -1,7 +1,5 @@
 // The files of a chapter that a reader may edit: tabs over a text field. The texts stay in the browser's storage.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 // An element with attributes and children; attributes that are functions become event handlers.
 live.element = (name, attributes = {}, ...children) => {

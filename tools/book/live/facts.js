@@ -1,7 +1,5 @@
 // What an experiment has shown, as in tools/check/facts.py: a test gives the same numbers to both. Laws are left to ./lab check.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.facts = (() => {
     const BLOCKS = 16;  // of pixels: their spread gives the error of a variance

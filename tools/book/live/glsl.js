@@ -1,8 +1,6 @@
 // Translates the project's shaders, GLSL 4.60 with Vulkan's buffers, to GLSL ES 3.00 for WebGL 2. Each line of the result belongs to
 // one of a file.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.glsl = (() => {
     const { Preprocessor, ShaderError, fail, isWord } = live.preprocessor, { Layout } = live;

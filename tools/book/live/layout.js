@@ -1,7 +1,5 @@
 // Where the numbers of the scene's arrays lie in the textures of a page, and the functions that read them.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.Layout = (() => {
     const { ShaderError } = live.preprocessor;

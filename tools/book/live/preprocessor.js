@@ -1,8 +1,6 @@
 // Turns a shader into tokens, with includes, conditions and macros resolved: what follows sees what a compiler sees. Each token knows its
 // place, for messages, and whether its text is the engine's, since only there may names be rewritten.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.preprocessor = (() => {
     class ShaderError extends Error {}

@@ -1,7 +1,5 @@
 // Renders a scene with WebGL 2: a texture of 32-bit words holds its arrays, and three more hold the film, twelve words a pixel.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.rendering = (() => {
     const WIDTH = 2048;  // texels of the arrays' textures, which every device allows

@@ -1,7 +1,5 @@
 // The page that tries a device: what a developer wants to know about it, as a text.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.Report = (() => {
     const { element } = live;
@@ -35,8 +33,8 @@ live.Report = (() => {
         // Renders a furnace: pixels that are not as bright as all others have lost rays between triangles.
         async furnace(frame) {
             const { scene, chapter, radiance, parameters } = await live.rendering.loadData(this.root.dataset.folder, "furnace"), samples = 64;
-            frame.stopRenderings();
-            const state = await frame.prepare({ scene, parameters, chapter, options: [] }, live.sources);
+            frame.picture.stop();
+            const state = await frame.picture.prepare({ scene, parameters, chapter, options: [] }, live.sources);
             let film;
             await state.rendering.render({ target: () => samples, look: latest => { film = latest; } });
             state.rendering.stop();
@@ -49,18 +47,19 @@ live.Report = (() => {
             this.frames.replaceChildren(root);
             const frame = root.frame = new this.Frame(root, false), seconds = () => (performance.now() - started) / 1000;
             await frame.start();
+            const { picture } = frame;
             const isFirst = chapter.endsWith(Report.chapters[0]);
-            if (frame.renderer && isFirst) {
-                const { gl, parallel, device } = frame.renderer;
+            if (picture.renderer && isFirst) {
+                const { gl, parallel, device } = picture.renderer;
                 this.say(`device ${device.name}; textures up to ${gl.getParameter(gl.MAX_TEXTURE_SIZE)}; ${parallel ? "compiles" : "does not compile"} beside the page`);
             }
             const isOver = () => frame.latest?.verdict || frame.verdict.classList.contains("live-failed") || seconds() > Report.patience;
             while (!isOver()) await live.rendering.pause(100);
             this.say(`\n${chapter}: ${frame.verdict.textContent}`);
-            if (frame.times) this.say(`compiled in ${frame.times.compile.toFixed(0)} ms, first picture after ${frame.times.first.toFixed(0)} ms; ${frame.numbers.textContent}`);
+            if (picture.times) this.say(`compiled in ${picture.times.compile.toFixed(0)} ms, first picture after ${picture.times.first.toFixed(0)} ms; ${picture.numbers.textContent}`);
             if (frame.editor.error.textContent) this.say(frame.editor.error.textContent);
-            if (frame.losses) this.say(`the browser took the GPU away ${frame.losses} times`);
-            if (frame.renderer && isFirst) await this.furnace(frame);
+            if (picture.losses) this.say(`the browser took the GPU away ${picture.losses} times`);
+            if (picture.renderer && isFirst) await this.furnace(frame);
             frame.stop();
         }
     };

@@ -1,8 +1,6 @@
 // The live verdict of common/statistics/live_verdict.cpp in JavaScript: a test feeds both the same films. The names are those of the
 // C++ files, which explain the method.
 "use strict";
-var live = globalThis.live ?? {};
-globalThis.live = live;
 
 live.statistics = (() => {
     const TILE = 8, FIRST_TEST = 16, POWER = 0.99, RELIABLE_PATHS = 1 << 17, TILE_FLOOR = 5e-4, RENDERER_ROUNDING = 1e-5;
