@@ -28,14 +28,24 @@ class Information(ProgramTest):
             self.assertRegex(self.render("--help", program=program), r"Exit codes: 0 done, 1 bad input or usage")
 
     def test_options_without_effect_are_noted(self):
-        lens = BINARIES / "12_lens"
+        lens, media = BINARIES / "12_lens", BINARIES / "13_media"
+        self.write("foggy.json", '{"meshes": [{"file": "quad.obj"}], "fog": {"extinction": 1, "albedo": [0.5, 0.5, 0.5]}}')
         for program, options, words in ((CHAPTER, ["--aperture-diameter=1"], "leaves out its lens"),
                                         (CHAPTER, ["--focus-distance=1"], "--focus-distance has no effect"),
                                         (lens, ["--focus-distance=1"], "on a pinhole: give --aperture-diameter"),
                                         (lens, ["--focus-distance=1", "--aperture-diameter=0.1"], None),
                                         (lens, ["--focus-distance=1", "--view=focus"], None),
-                                        (CHAPTER, ["--specular"], "--specular has no effect")):
-            _, _, err = self.run_program("quad.json", "--width=4", "--height=4", "--samples=1", *options, program=program)
+                                        (CHAPTER, ["--specular"], "--specular has no effect"),
+                                        (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.hdr"], "--exposure has no effect"),
+                                        (CHAPTER, ["--exposure=1", "--view=normals"], "--exposure has no effect"),
+                                        (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.jpg"], None),
+                                        (CHAPTER, ["--exposure=1"], None),  # the default outputs have a PNG
+                                        (media, ["--background=1,1,1"], None),
+                                        (media, ["foggy.json", "--background=1,1,1"], "--background has no effect"),
+                                        (CHAPTER, ["--max-threads-per-pixel=2", "--backend=compute"], None),
+                                        (CHAPTER, ["--max-threads-per-pixel=2", "--backend=native"], "--max-threads-per-pixel has no effect")):
+            scene = [] if "foggy.json" in options else ["quad.json"]
+            _, _, err = self.run_program(*scene, "--width=4", "--height=4", "--samples=1", *options, program=program)
             self.assertRegex(err, rf"\Anote: [^\n]*{words}[^\n]*\n\Z" if words else r"\A\Z", options)
 
     def test_a_picture_without_light_is_noted(self):
