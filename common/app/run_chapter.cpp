@@ -193,16 +193,21 @@ std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob&
 void print_warnings(const Chapter& chapter, const RenderJob& job, bool has_window) {
     std::vector<std::string> warnings = job.scene->warnings;
     const SceneFeatures features = features_of(*job.scene);
-    const std::pair<bool, const char*> left_out[] = {
-        {features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
-        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"},
-        {features.media && !chapter.media, "media (fog, medium)"}};
-    for (const auto& [is_left_out, what] : left_out) {
+    const std::string scene = job.scene->file.string();
+    struct {
+        bool is_left_out;
+        const char* what;
+        std::string asked_by;
+    } const extras[] = {{features.microfacets && !chapter.microfacets, "microfacets (Pr)", scene},
+                        {features.lens && !chapter.lens, "lens (aperture diameter)", scene},
+                        {asks_for_lens(job.options) && !features.lens && !chapter.lens, "lens", "--aperture-diameter"},
+                        {features.media && !chapter.media, "media (fog, medium)", scene}};
+    for (const auto& [is_left_out, what, asked_by] : extras) {
         if (!is_left_out) continue;
-        const std::string scene = job.scene->file.string(), use = ": use a chapter that can render it, see ./lab run";
+        const std::string use = ": use a chapter that can render it, see ./lab run";
         if (!job.options.run.report.empty())
-            throw UserError("--report: " + chapter.name + " cannot render the " + what + " of " + scene + use);
-        warnings.push_back(scene + ": " + chapter.name + " leaves out its " + what + use);
+            throw UserError("--report: " + chapter.name + " cannot render the " + what + " of " + asked_by + use);
+        warnings.push_back(asked_by + ": " + chapter.name + " leaves out its " + what + use);
     }
     for (std::string& warning : unused_options(chapter, job, has_window)) warnings.push_back(std::move(warning));
     const bool has_light = features.area_lights || features.light_probe || background_of(*job.scene, job.options) != vec3(0);
