@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #ifdef _WIN32
@@ -16,6 +17,7 @@
 
 #include <cwchar>
 #else
+#include <sys/resource.h>
 #include <unistd.h>
 #endif
 #ifdef __linux__
@@ -188,8 +190,18 @@ std::filesystem::path running_program() {
 }
 #endif
 
+// Without memory, Mesa's drivers crash.
+static void tell_limit_of_memory(int) {
+    constexpr std::string_view text =
+        "error: crashed, as drivers do where the limit of memory is too low: raise it (ulimit -v unlimited)\n";
+    (void)!write(STDERR_FILENO, text.data(), text.size());
+    _exit(3);
+}
+
 void prepare_program() {
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+    struct rlimit memory {};
+    if (getrlimit(RLIMIT_AS, &memory) == 0 && memory.rlim_cur != RLIM_INFINITY) std::signal(SIGSEGV, tell_limit_of_memory);
 }
 
 void make_binary(std::FILE*) {}

@@ -159,8 +159,17 @@ void debug_pixel(Build& build, uvec2 pixel) {
                 sum.b);
 }
 
+// Whether some output is a picture that --exposure makes brighter or darker.
+bool writes_exposed_picture(const Options& options) {
+    const auto is_exposed = [](const std::filesystem::path& file) {
+        const std::string ending = lower_case_extension(file);
+        return ending != ".exr" && ending != ".hdr";
+    };
+    return options.image.display() == DisplayTransform::exposure && std::ranges::any_of(options.run.outputs, is_exposed);
+}
+
 // One line for each option that was given but changes nothing.
-std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob& job) {
+std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob& job, bool has_window) {
     std::vector<std::string> unused;
     const CameraOptions& camera = job.options.camera;
     const bool has_focus = camera.focus_distance && (!job.options.image.view || job.options.image.view->name != "focus");
@@ -171,25 +180,36 @@ std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob&
     }
     if (job.options.scene.specular && !features_of(*job.scene).specular)
         unused.push_back("--specular has no effect: no material of " + job.scene->file.string() + " has a Phong lobe (Ks)");
+    if (job.options.appearance.exposure != 0 && !has_window && !writes_exposed_picture(job.options))
+        unused.push_back("--exposure has no effect: it brightens PNG and JPG pictures of radiance, and no output is one");
+    const bool has_fog = chapter.media && !job.scene->media.empty() && job.scene->media.front().extinction > 0 &&
+                         job.scene->media.front().grid_size.x == 0;
+    if (job.options.light.background && has_fog)
+        unused.push_back("--background has no effect: no light gets through the endless fog of " + job.scene->file.string());
     return unused;
 }
 
 // Prints what is worth knowing about the scene of a job. Throws UserError if a report would describe another picture.
-void print_warnings(const Chapter& chapter, const RenderJob& job) {
+void print_warnings(const Chapter& chapter, const RenderJob& job, bool has_window) {
     std::vector<std::string> warnings = job.scene->warnings;
     const SceneFeatures features = features_of(*job.scene);
-    const std::pair<bool, const char*> left_out[] = {
-        {features.microfacets && !chapter.microfacets, "microfacets (Pr)"},
-        {(features.lens || asks_for_lens(job.options)) && !chapter.lens, "lens (aperture diameter)"},
-        {features.media && !chapter.media, "media (fog, medium)"}};
-    for (const auto& [is_left_out, what] : left_out) {
+    const std::string scene = job.scene->file.string();
+    struct {
+        bool is_left_out;
+        const char* what;
+        std::string asked_by;
+    } const extras[] = {{features.microfacets && !chapter.microfacets, "microfacets (Pr)", scene},
+                        {features.lens && !chapter.lens, "lens (aperture diameter)", scene},
+                        {asks_for_lens(job.options) && !features.lens && !chapter.lens, "lens", "--aperture-diameter"},
+                        {features.media && !chapter.media, "media (fog, medium)", scene}};
+    for (const auto& [is_left_out, what, asked_by] : extras) {
         if (!is_left_out) continue;
-        const std::string scene = job.scene->file.string(), use = ": use a chapter that can render it, see ./lab run";
+        const std::string use = ": use a chapter that can render it, see ./lab run";
         if (!job.options.run.report.empty())
-            throw UserError("--report: " + chapter.name + " cannot render the " + what + " of " + scene + use);
-        warnings.push_back(scene + ": " + chapter.name + " leaves out its " + what + use);
+            throw UserError("--report: " + chapter.name + " cannot render the " + what + " of " + asked_by + use);
+        warnings.push_back(asked_by + ": " + chapter.name + " leaves out its " + what + use);
     }
-    for (std::string& warning : unused_options(chapter, job)) warnings.push_back(std::move(warning));
+    for (std::string& warning : unused_options(chapter, job, has_window)) warnings.push_back(std::move(warning));
     const bool has_light = features.area_lights || features.light_probe || background_of(*job.scene, job.options) != vec3(0);
     if (!has_light && !job.options.image.view)
         warnings.push_back(job.scene->file.string() + ": nothing emits light: give a material Ke, or use --background 1,1,1");
@@ -225,12 +245,15 @@ class Commands {
         RenderJob job = make_job(chapter_, options, scene);
         // A time limit is checked between dispatches, so that each of them has to end.
         if (options.run.time_limit) job.estimator = with_limited_loops(std::move(job.estimator));
-        print_warnings(chapter_, job);
-        if (const auto window = open_window(chapter_, options, job.parameters.image_size);
-            window && run_in_window(*window, chapter_, job))
-            return;
+        auto window = open_window(chapter_, options, job.parameters.image_size);
+        print_warnings(chapter_, job, window != nullptr);
+        if (window && run_in_window(*window, chapter_, job)) return;
+        window.reset();
 
         rebuild(std::move(job));
+        if (options.estimator.max_threads_per_pixel && !build_->scene_backend->can_share_pixels() && !options.run.quiet)
+            std::cerr << "note: --max-threads-per-pixel has no effect: " << to_string(build_->backend)
+                      << " computes a pixel in one thread\n";
         if (!options.run.quiet) print_start(chapter_, *device_, *build_);
         if (options.run.debug_pixel)
             debug_pixel(*build_, *options.run.debug_pixel);

@@ -1,5 +1,5 @@
-// Caches compiled shaders, pipelines and backend choices between runs. Failing to read or write an entry is silent; a damaged
-// entry counts as absent.
+// Caches compiled shaders, pipelines and backend choices between runs. A damaged entry counts as absent. Beyond 512 MB of
+// entries, those go that were read or written longest ago.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -17,7 +17,7 @@ std::optional<std::string> read_cache(const std::string& name);
 // The entry's file; empty if there is no cache folder.
 std::filesystem::path cache_file(const std::string& name);
 
-// Replaces the entry atomically.
-void write_cache(const std::string& name, std::string_view contents);
+// Replaces the entry atomically. Returns why that is not possible, or nothing: for most, the next start just takes longer.
+std::string write_cache(const std::string& name, std::string_view contents);
 
 }  // namespace lab

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <set>
+#include <system_error>
 
 #include "clock.h"
 #include "error.h"
@@ -365,6 +366,9 @@ Failure failure_of(const std::exception& error) {
     if (dynamic_cast<const DeviceError*>(&error)) return {2, error.what()};
     if (dynamic_cast<const DeviceFailure*>(&error)) return {3, error.what()};
     if (dynamic_cast<const vk::SystemError*>(&error)) return {3, std::string("the device failed: ") + error.what()};
+    if (const auto* system = dynamic_cast<const std::system_error*>(&error);
+        system && system->code() == std::errc::resource_unavailable_try_again)
+        return {3, "no room for another thread: raise the limit of memory (ulimit -v) or of processes (ulimit -u)"};
     if (dynamic_cast<const std::bad_alloc*>(&error)) return {3, "out of memory: use a smaller scene or image"};
     return {1, error.what()};
 }

@@ -94,6 +94,11 @@ T& get_constant(const Bindings& bindings, size_t offset) {
     return *reinterpret_cast<T*>(bindings.push_constants + offset);
 }
 
+template <typename T>
+inline constexpr bool is_matrix = false;
+template <length_t n, length_t m, typename T, qualifier q>
+inline constexpr bool is_matrix<mat<n, m, T, q>> = true;
+
 // Calls `f` for each component of vectors, or for scalars.
 template <typename F, typename T, typename... More>
 constexpr auto each(F f, const T& x, const More&... more) {
@@ -152,7 +157,7 @@ struct Builtins {
     LAB_SAME(sinh) LAB_SAME(cosh) LAB_SAME(tanh) LAB_SAME(asinh) LAB_SAME(acosh) LAB_SAME(atanh) LAB_SAME(pow) LAB_SAME(exp)
     LAB_SAME(log) LAB_SAME(exp2) LAB_SAME(log2) LAB_SAME(sqrt) LAB_SAME(inversesqrt) LAB_SAME(floor) LAB_SAME(trunc)
     LAB_SAME(round) LAB_SAME(roundEven) LAB_SAME(ceil) LAB_SAME(fract) LAB_SAME(mod) LAB_SAME(step) LAB_SAME(smoothstep)
-    LAB_SAME(isnan) LAB_SAME(isinf) LAB_SAME(length) LAB_SAME(distance) LAB_SAME(dot) LAB_SAME(cross) LAB_SAME(faceforward)
+    LAB_SAME(isnan) LAB_SAME(isinf) LAB_SAME(cross) LAB_SAME(faceforward)
     LAB_SAME(reflect) LAB_SAME(refract) LAB_SAME(outerProduct) LAB_SAME(transpose) LAB_SAME(determinant) LAB_SAME(inverse)
     LAB_SAME(sign) LAB_SAME(min) LAB_SAME(max) LAB_SAME(clamp) LAB_SAME(mix) LAB_SAME(any) LAB_SAME(all) LAB_SAME(bitCount)
     LAB_SAME(findLSB) LAB_SAME(packHalf2x16) LAB_SAME(unpackHalf2x16) LAB_SAME(packUnorm4x8) LAB_SAME(unpackUnorm4x8)
@@ -185,9 +190,49 @@ struct Builtins {
     static constexpr T flip(const T& x) {
         return ~x;
     }
+    // Sums of products are added in the order in which lavapipe adds them: those of matrices from the last one on.
+    template <typename T>
+    static constexpr auto dot(const T& a, const T& b) {
+        if constexpr (std::is_arithmetic_v<T>) {
+            return a * b;
+        } else {
+            auto sum = a[0] * b[0];
+            for (length_t i = 1; i < T::length(); ++i) sum += a[i] * b[i];
+            return sum;
+        }
+    }
     template <typename A, typename B>
     static constexpr auto multiply(const A& a, const B& b) {
-        return a * b;
+        constexpr bool has_factors = !std::is_arithmetic_v<A> && !std::is_arithmetic_v<B>;
+        if constexpr (has_factors && is_matrix<A> && is_matrix<B>) {
+            decltype(a * b) result;
+            for (length_t i = 0; i < B::length(); ++i) result[i] = multiply(a, b[i]);
+            return result;
+        } else if constexpr (has_factors && is_matrix<A>) {
+            auto sum = a[A::length() - 1] * b[A::length() - 1];
+            for (length_t i = A::length() - 1; i-- > 0;) sum = a[i] * b[i] + sum;
+            return sum;
+        } else if constexpr (has_factors && is_matrix<B>) {
+            decltype(a * b) result;
+            for (length_t i = 0; i < B::length(); ++i) {
+                result[i] = a[A::length() - 1] * b[i][A::length() - 1];
+                for (length_t j = A::length() - 1; j-- > 0;) result[i] = a[j] * b[i][j] + result[i];
+            }
+            return result;
+        } else {
+            return a * b;
+        }
+    }
+    template <typename T>
+    static auto length(const T& x) {
+        if constexpr (std::is_arithmetic_v<T>)
+            return std::abs(x);
+        else
+            return glm::sqrt(dot(x, x));
+    }
+    template <typename T>
+    static auto distance(const T& a, const T& b) {
+        return length(b - a);
     }
     template <typename C, typename T>
     static constexpr T select(const C& condition, const T& a, const T& b) {
@@ -220,7 +265,7 @@ struct Builtins {
         if constexpr (std::is_arithmetic_v<T>)  // GLM's takes no number
             return x / glm::abs(x);
         else
-            return glm::normalize(x);
+            return x * glm::inversesqrt(dot(x, x));
     }
     // GLM's know no negative numbers: of those GLSL finds the highest 0, and extends the sign.
     template <typename T>

@@ -121,13 +121,16 @@ struct Builtins : native::Builtins {
     LAB_WHOLE(dot, [](const auto& a, const auto& b) {
         const auto product = a * b;
         constexpr int n = size_of<std::remove_const_t<decltype(product)>>;
-        if constexpr (n == 4)  // as GLM adds them
-            return (product[0] + product[1]) + (product[2] + product[3]);
         Lanes<float> sum = component(product, 0);
         for (int i = 1; i < n; ++i) sum = sum + component(product, i);
         return sum;
     })
-    LAB_WHOLE(length, [](const auto& a) { return sqrt(dot(a, a)); })
+    LAB_WHOLE(length, [](const auto& a) {
+        if constexpr (size_of<std::remove_cvref_t<decltype(a)>> == 1)
+            return abs(a);
+        else
+            return sqrt(dot(a, a));
+    })
     LAB_WHOLE(distance, [](const auto& a, const auto& b) { return length(b - a); })
     LAB_WHOLE(normalize, [](const auto& a) { return a * inversesqrt(dot(a, a)); })
     LAB_WHOLE(reflect, [](const auto& i, const auto& n) { return i - n * dot(n, i) * 2.0f; })

@@ -106,11 +106,9 @@ struct Mat {
     LAB_INLINE const Column& operator[](int i) const { return column[i]; }
 };
 template <typename T>
-inline constexpr bool is_matrix = false;
+inline constexpr bool is_matrix = native::is_matrix<T>;
 template <int n, int m>
 inline constexpr bool is_matrix<Mat<n, m>> = true;
-template <length_t n, length_t m, typename T, qualifier q>
-inline constexpr bool is_matrix<mat<n, m, T, q>> = true;
 
 template <typename T>
 inline constexpr bool is_varying = is_lanes<T>;
@@ -252,7 +250,7 @@ LAB_OPERATOR(-)
 LAB_OPERATOR(~)
 #undef LAB_OPERATOR
 
-// Products of matrices with each other, with vectors and with numbers.
+// Products of matrices with each other, with vectors and with numbers. Sums begin with the last product, as one by one.
 template <typename A, typename B>
 LAB_INLINE auto multiply(const A& a, const B& b) {
     if constexpr (is_matrix<A> && is_matrix<B>) {
@@ -264,14 +262,14 @@ LAB_INLINE auto multiply(const A& a, const B& b) {
         for (int i = 0; i < A::length(); ++i) result[i] = a[i] * b;
         return result;
     } else if constexpr (is_matrix<A>) {
-        auto sum = a[0] * b[0];
-        for (int i = 1; i < A::length(); ++i) sum = sum + a[i] * b[i];
+        auto sum = a[A::length() - 1] * b[A::length() - 1];
+        for (int i = A::length() - 1; i-- > 0;) sum = a[i] * b[i] + sum;
         return sum;
     } else {
         Vec<B::length(), Lanes<float>> result;
         for (int i = 0; i < B::length(); ++i) {
-            result[i] = b[i][0] * a[0];
-            for (int j = 1; j < size_of<A>; ++j) result[i] = result[i] + b[i][j] * a[j];
+            result[i] = b[i][size_of<A> - 1] * a[size_of<A> - 1];
+            for (int j = size_of<A> - 1; j-- > 0;) result[i] = b[i][j] * a[j] + result[i];
         }
         return result;
     }

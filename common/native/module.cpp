@@ -5,16 +5,15 @@
 namespace lab::native {
 std::vector<std::string> missing_tools() { return {"Linux or macOS"}; }
 void set_mode(Mode) {}
+Mode get_mode() { return Mode::fast; }
 Code load(const std::vector<uint32_t>&) { return {}; }
 MakeRayTracer load_embree() { return nullptr; }
 std::string ray_tracer_name() { return "the lab's own tree"; }
-void run_groups(RunGroup, Bindings, uint32_t) {}
 }  // namespace lab::native
 
 #else
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <setjmp.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -33,13 +32,11 @@ void run_groups(RunGroup, Bindings, uint32_t) {}
 #include <sstream>
 #include <thread>
 
-#include "clock.h"
 #include "error.h"
 #include "files/cache.h"
 #include "files/file.h"
 #include "files/project_folder.h"
 #include "native/translator.h"
-#include "parallel.h"
 #include "platform.h"
 
 extern char** environ;
@@ -84,9 +81,17 @@ fs::path find_compiler() {
 fs::path header_folder() { return project_folder() / "common"; }
 
 std::vector<std::string> compiler_arguments() {
-    std::vector<std::string> arguments{
-        "-std=c++20",        "-shared", "-fPIC",    "-fvisibility=hidden",          "-fwrapv", "-fno-finite-loops",
-        "-ffp-contract=off", "-w",      "-DNDEBUG", "-I" + header_folder().string()};
+    std::vector<std::string> arguments{"-std=c++20",
+                                       "-shared",
+                                       "-fPIC",
+                                       "-fvisibility=hidden",
+                                       "-fwrapv",
+                                       "-fno-finite-loops",
+                                       "-ffp-contract=off",
+                                       "-w",
+                                       "-DNDEBUG",
+                                       "-fstack-clash-protection",
+                                       "-I" + header_folder().string()};
     if (std::string(LAB_GLM_FOLDER) != "/usr/include") arguments.insert(arguments.end(), {"-isystem", LAB_GLM_FOLDER});
     if (mode == Mode::fast)  // in one large function, structs need not be copied from one to the next, nor to and from memory
         arguments.insert(arguments.end(), {"-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-finline-limit=4000",
@@ -209,13 +214,15 @@ std::string compile(const std::string& text, const std::vector<std::string>& arg
                                      (folder / "code.so").string()};
     command.insert(command.end(), arguments.begin(), arguments.end());
     if (run_program(command, folder / "log")) {
-        write_cache(name, read_file(folder / "code.so", UINT64_MAX));
+        const std::string why_not = write_cache(name, read_file(folder / "code.so", UINT64_MAX));
+        if (!why_not.empty()) throw UserError(why_not);
         return "";
     }
     std::ifstream log(folder / "log");
     return command.front() + " does not compile its code: " + first_error(log);
 } catch (const UserError& error) {
-    throw UserError(std::string("the backend native: ") + error.what() + ": set XDG_CACHE_HOME to a folder for its code");
+    throw UserError(std::string("the backend native: ") + error.what() +
+                    ": make room there, or set XDG_CACHE_HOME to another folder for its code");
 }
 
 std::mutex& mutex_of(const std::string& name) {
@@ -271,45 +278,6 @@ std::string find_embree() {
     return {};
 }
 
-// A crash in a shader returns to the thread that runs it. The handler has a stack of its own, since the shader's may be full.
-// Where the shader has overwritten that, the way back crashes, too, and there is none but out.
-thread_local sigjmp_buf way_back;
-thread_local bool is_in_shader = false;
-std::atomic<bool> has_crashed = false;
-static_assert(std::atomic<bool>::is_always_lock_free);
-const char* advice() {
-    return mode == Mode::checked ? "the sanitizer's last line tells where"
-                                 : "as it does for an index outside of an array: --sanitize tells where";
-}
-class HandlerStack {
-  public:
-    HandlerStack() {
-        const stack_t own{.ss_sp = memory, .ss_flags = 0, .ss_size = sizeof memory};
-        sigaltstack(&own, &before_);
-    }
-    HandlerStack(const HandlerStack&) = delete;
-    HandlerStack& operator=(const HandlerStack&) = delete;
-    ~HandlerStack() { sigaltstack(&before_, nullptr); }  // a sanitizer's, which it unmaps when the thread ends
-
-  private:
-    static inline thread_local char memory[1 << 14];
-    stack_t before_{};
-};
-void return_from_crash(int signal) {
-    if (is_in_shader) {
-        is_in_shader = false;
-        has_crashed = true;
-        siglongjmp(way_back, signal);
-    }
-    if (has_crashed) {
-        for (const char* text : {"error: the shader crashed and overwrote memory of the program, ", advice(), "\n"})
-            (void)!write(STDERR_FILENO, text, std::strlen(text));
-        _exit(3);
-    }
-    std::signal(signal, SIG_DFL);
-    raise(signal);
-}
-
 }  // namespace
 
 std::vector<std::string> missing_tools() {
@@ -323,6 +291,7 @@ std::vector<std::string> missing_tools() {
 }
 
 void set_mode(Mode wanted) { mode = wanted; }
+Mode get_mode() { return mode; }
 
 Code load(const std::vector<uint32_t>& spirv) {
     std::string why_one_by_one;
@@ -347,38 +316,6 @@ MakeRayTracer load_embree() {
 std::string ray_tracer_name() {
     const std::string embree = find_embree();
     return embree.empty() ? "the lab's own tree; libembree-dev is faster" : "Embree " + embree.substr(embree.size() - 1);
-}
-
-void run_groups(RunGroup run, Bindings bindings, uint32_t count) {
-    static const bool handles_crashes = [] {
-        struct sigaction action {};
-        action.sa_handler = return_from_crash;
-        action.sa_flags = SA_ONSTACK;
-        for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigaction(signal, &action, nullptr);
-        return true;
-    }();
-    (void)handles_crashes;
-    bool is_stopped = false;
-    bindings.is_stopped = &is_stopped;
-    bindings.group_count = count;
-    const std::atomic_ref stop(is_stopped);
-    // Interrupts are seen while a shader runs, since it may never end.
-    const Watch watch(std::chrono::milliseconds(50), [&] {
-        if (is_interrupted()) stop = true;
-        return !stop;
-    });
-    in_parallel(count, 1, [&](size_t begin, size_t) {
-        const HandlerStack stack;
-        char error[512];
-        const int signal = sigsetjmp(way_back, 1);
-        is_in_shader = signal == 0;
-        const Outcome outcome = signal == 0 ? run(bindings, static_cast<uint32_t>(begin), error, sizeof error) : Outcome::failed;
-        is_in_shader = false;
-        if (outcome != Outcome::failed) return;
-        stop = true;
-        if (signal == 0) throw DeviceFailure(error);
-        throw DeviceFailure(std::string("the shader crashed (") + strsignal(signal) + "), " + advice());
-    });
 }
 
 }  // namespace lab::native

@@ -19,6 +19,7 @@ enum class Mode {
 
 // How all shaders are compiled that are loaded from now on; `fast` without a call.
 void set_mode(Mode mode);
+Mode get_mode();
 
 // A compute shader as code, which stays loaded.
 struct Code {
@@ -36,8 +37,8 @@ MakeRayTracer load_embree();
 // What traces rays, as --list-devices says it: Embree with its version, or our own tree.
 std::string ray_tracer_name();
 
-// Runs workgroups on all processors. Interrupts of the program stop them. Throws UserError for what a checked shader finds, and
-// DeviceFailure if the code crashes.
+// Runs workgroups on all processors. Interrupts of the program stop them. Throws DeviceFailure for what a checked shader finds,
+// and if the code crashes.
 void run_groups(RunGroup run, Bindings bindings, uint32_t count);
 
 }  // namespace lab::native

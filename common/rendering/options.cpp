@@ -23,14 +23,16 @@ CLI::Validator path_from_home() {
 }
 
 // Accepts finite numbers in [low, high]; CLI11 alone would also accept nan and inf.
-CLI::Validator within(double low, double high, const std::string& meaning) {
-    return {[=](std::string& text) -> std::string {
+CLI::Validator within(double low, double high, const std::string& what) {
+    std::ostringstream range;
+    range << what << " from " << low << " to " << high;
+    return {[=, meaning = range.str()](std::string& text) -> std::string {
                 char* end = nullptr;
                 const double value = std::strtod(text.c_str(), &end);
                 if (end != text.c_str() && *end == '\0' && value >= low && value <= high) return {};
                 return "'" + text + "' is not " + meaning;
             },
-            meaning};
+            range.str()};
 }
 
 // For transform(): removes leading zeros, which would make the number octal.
@@ -65,19 +67,19 @@ void add_options(CLI::App& app, const Chapter& chapter, Options& options, std::s
     const auto whole = [&](const char* name, auto& value, uint32_t low, uint32_t high, const std::string& help) {
         app.add_option(name, value, help)->transform(whole_number(low, high));
     };
-    const auto number = [&](const char* name, auto& value, double low, double high, const char* meaning, const char* help) {
-        app.add_option(name, value, help)->check(within(low, high, meaning));
+    const auto number = [&](const char* name, auto& value, double low, double high, const char* what, const char* help) {
+        app.add_option(name, value, help)->check(within(low, high, what));
     };
-    const auto vector = [&](const char* name, std::optional<vec3>& value, double low, const char* meaning, const char* type,
+    const auto vector = [&](const char* name, std::optional<vec3>& value, double low, const char* what, const char* type,
                             const char* help) {
         const auto set = [&value](const std::array<float, 3>& given) { value = {given[0], given[1], given[2]}; };
         app.add_option_function<std::array<float, 3>>(name, set, help)
             ->delimiter(',')
-            ->check(within(low, 1e30, meaning))
+            ->check(within(low, 1e30, what))
             ->type_name(type);
     };
     const auto place = [&](const char* name, std::optional<vec3>& value, const char* help) {
-        vector(name, value, -1e30, "a finite number", "X,Y,Z", help);
+        vector(name, value, -1e30, "a number", "X,Y,Z", help);
     };
     std::vector<std::string> view_names;
     for (const auto& known : views()) view_names.push_back(known.name);
@@ -93,30 +95,28 @@ void add_options(CLI::App& app, const Chapter& chapter, Options& options, std::s
           "Bounces after which a path ends, 0 for emission only" +
               unless_given(chapter.unlimited_path_length ? safety_limit : defaults.max_path_length));
     whole("--only-path-length", light.only_path_length, 0, path_length_limit, "Show only light after exactly this many bounces");
-    number("--target-error", run.target_error, 1e-12, 1e12, "a positive number",
+    number("--target-error", run.target_error, 1e-12, 1e12, "a number",
            "Stop when the relative error is below this: 0.01 is 1 %");
-    number("--time-limit", run.time_limit, 1e-3, 1e9, "a positive number of seconds", "Stop after this many seconds");
+    number("--time-limit", run.time_limit, 1e-3, 1e9, "a number of seconds", "Stop after this many seconds");
     place("--camera-position", camera.position, "Where the camera stands");
     place("--camera-target", camera.target, "What it looks at");
     place("--camera-up", camera.up, "What it holds upwards");
-    number("--vertical-fov", camera.vertical_fov, 1e-6, 179.999, "an angle between 0 and 180 degrees",
+    number("--vertical-fov", camera.vertical_fov, 1e-6, 179.999, "an angle",
            "Angle between the picture's top and bottom in degrees");
-    number("--aperture-diameter", camera.aperture_diameter, 0, 1e18, "a length from 0 to 1e18",
-           "Diameter of the lens, 0 for a pinhole");
-    number("--focus-distance", camera.focus_distance, 1e-30, 1e30, "a positive length (1e18 is infinity)",
+    number("--aperture-diameter", camera.aperture_diameter, 0, 1e18, "a length", "Diameter of the lens, 0 for a pinhole");
+    number("--focus-distance", camera.focus_distance, 1e-30, 1e30, "a length (1e18 is infinity)",
            "From the lens to the plane in focus; default: the scene's, or else where the target is");
-    vector("--background", light.background, 0, "a radiance (finite and not negative)", "R,G,B",
-           "Radiance of the sky; with a light probe its factor");
+    vector("--background", light.background, 0, "a radiance", "R,G,B", "Radiance of the sky; with a light probe its factor");
     app.add_flag("--specular", scene.specular, "Use the Phong lobe Ks, Ns of the materials");
     app.add_option("--view", view, "Show something else than radiance")->check(CLI::IsMember(view_names));
     app.add_option("--output", run.outputs, "Picture to write (.exr .hdr .png .jpg); may be repeated")
         ->allow_extra_args(false)
         ->transform(path_from_home());
-    number("--exposure", appearance.exposure, -100, 100, "a number from -100 to 100", "Brightness of PNG and JPG in stops");
+    number("--exposure", appearance.exposure, -100, 100, "a number", "Brightness of PNG and JPG in stops");
     app.add_option("--reference", run.reference, "EXR to compare with")->transform(path_from_home());
     app.add_option("--report", run.report, "Error against samples and seconds (.json or .csv)")->transform(path_from_home());
     app.add_option("--resume", run.resume, "EXR of an earlier run to continue")->transform(path_from_home());
-    number("--save-every", run.save_every, 1e-3, 1e9, "a positive number of seconds", "Write the outputs every so many seconds");
+    number("--save-every", run.save_every, 1e-3, 1e9, "a number of seconds", "Write the outputs every so many seconds");
     app.add_option("--backend", run.backend, "How rays are traced")->check(CLI::IsMember(backends));
     whole("--max-threads-per-pixel", estimator.max_threads_per_pixel, 1, max_count,
           "Threads that share a pixel of a small picture, at most; default: as many as keep the device busy");
@@ -179,14 +179,12 @@ void add_chapter_options(CLI::App& app, const Chapter& chapter, Options& options
     for (size_t i = 0; i < chapter.options.size(); ++i) {
         const ChapterOption& option = chapter.options[i];
         const bool is_whole = std::holds_alternative<uint32_t RenderParameters::*>(option.parameter);
-        std::ostringstream range;
-        range << "a number from " << option.low << " to " << option.high;
         std::ostringstream default_value;
         default_value << option.default_value;
         app.add_option(option.name, options.samples.chapter_values[i], option.help)
             ->default_str(default_value.str())
             ->transform(is_whole ? whole_number(static_cast<uint32_t>(option.low), static_cast<uint32_t>(option.high))
-                                 : within(option.low, option.high, range.str()));
+                                 : within(option.low, option.high, "a number"));
     }
 }
 

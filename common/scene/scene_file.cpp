@@ -91,7 +91,7 @@ CameraPose read_camera(const JsonObject& camera) {
         camera.fail("aperture_diameter", "must be from 0 to 1e18");
     if (const auto focus = camera.number("focus_distance")) {
         pose.focus_distance = static_cast<float>(*focus);
-        if (!(pose.focus_distance > 0)) camera.fail("focus_distance", "must be above 0");
+        if (!(pose.focus_distance > 0)) camera.fail("focus_distance", "must be above 0 (1e18 is infinity)");
     }
     return pose;
 }

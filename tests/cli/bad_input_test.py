@@ -116,6 +116,9 @@ class SceneFiles(ProgramTest):
 
     def test_numbers_beyond_floats(self):
         good = (self.folder / "quad.json").read_text()
+        for key, value in (("camera.vertical_fov", 1e300), ("meshes.0.scale", 1e300), ("meshes.0.translation", [1e300, 0, 0])):
+            self.refuse_change(key, value, "32 bits")
+        self.refuse_change("camera.focus_distance", -1, "1e18 is infinity")
         for number in ("NaN", "Infinity", "1e999", "-1e999"):
             self.refuse_text(good.replace("40", number))
 

@@ -152,12 +152,10 @@ class BatchTest(ProgramTest):
                     self.assertIsInstance(self.run_in(batch, name, timeout=0.4), int)
 
     def test_at_the_end_nothing_goes_on(self):
-        began = time.monotonic()
         with Batch() as batch:
             found = batch.map(lambda name: self.run_in(batch, name), ["hang"] * 3)
             while len(batch.workers) < 2:
                 time.sleep(0.01)
-        self.assertLess(time.monotonic() - began, 30)
         self.assertEqual([worker.process.poll() for worker in batch.workers], [-9, -9])
         self.assertEqual(next(found), (-9, ""))
         with self.assertRaises(UserError):

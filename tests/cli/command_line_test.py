@@ -1,6 +1,8 @@
 """The command line: what it accepts, and that it refuses everything else with one clear line."""
 
 import re
+import resource
+import signal
 from pathlib import Path
 
 from image_files import Exr
@@ -28,14 +30,24 @@ class Information(ProgramTest):
             self.assertRegex(self.render("--help", program=program), r"Exit codes: 0 done, 1 bad input or usage")
 
     def test_options_without_effect_are_noted(self):
-        lens = BINARIES / "12_lens"
-        for program, options, words in ((CHAPTER, ["--aperture-diameter=1"], "leaves out its lens"),
+        lens, media = BINARIES / "12_lens", BINARIES / "13_media"
+        self.write("foggy.json", '{"meshes": [{"file": "quad.obj"}], "fog": {"extinction": 1, "albedo": [0.5, 0.5, 0.5]}}')
+        for program, options, words in ((CHAPTER, ["--aperture-diameter=1"], "--aperture-diameter: 01_uniform_sampling leaves out its lens"),
                                         (CHAPTER, ["--focus-distance=1"], "--focus-distance has no effect"),
                                         (lens, ["--focus-distance=1"], "on a pinhole: give --aperture-diameter"),
                                         (lens, ["--focus-distance=1", "--aperture-diameter=0.1"], None),
                                         (lens, ["--focus-distance=1", "--view=focus"], None),
-                                        (CHAPTER, ["--specular"], "--specular has no effect")):
-            _, _, err = self.run_program("quad.json", "--width=4", "--height=4", "--samples=1", *options, program=program)
+                                        (CHAPTER, ["--specular"], "--specular has no effect"),
+                                        (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.hdr"], "--exposure has no effect"),
+                                        (CHAPTER, ["--exposure=1", "--view=normals"], "--exposure has no effect"),
+                                        (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.jpg"], None),
+                                        (CHAPTER, ["--exposure=1"], None),  # the default outputs have a PNG
+                                        (media, ["--background=1,1,1"], None),
+                                        (media, ["foggy.json", "--background=1,1,1"], "--background has no effect"),
+                                        (CHAPTER, ["--max-threads-per-pixel=2", "--backend=compute"], None),
+                                        (CHAPTER, ["--max-threads-per-pixel=2", "--backend=native"], "--max-threads-per-pixel has no effect")):
+            scene = [] if "foggy.json" in options else ["quad.json"]
+            _, _, err = self.run_program(*scene, "--width=4", "--height=4", "--samples=1", *options, program=program)
             self.assertRegex(err, rf"\Anote: [^\n]*{words}[^\n]*\n\Z" if words else r"\A\Z", options)
 
     def test_a_picture_without_light_is_noted(self):
@@ -128,9 +140,12 @@ class WrongArguments(ProgramTest):
 
     def test_numbers_out_of_range(self):
         for option, values in {"--target-error": (0, -1), "--time-limit": (0, -1), "--vertical-fov": (0, -10, 180, 400),
-                               "--exposure": (1e9, -1e9), "--save-every": (0, -1)}.items():
+                               "--exposure": (1e9, -1e9), "--save-every": (0, -1), "--width": (0, 16385, 10**30),
+                               "--camera-position": ("1e31,0,0",), "--background": ("1,1,1e31", "1,1,-1"), "--focus-distance": (0, 1e31)}.items():
             for value in values:
-                self.refuse(option, value)
+                self.refuse(option, value, r" from \S+ to \S+")
+        for value in ("inf", "infinity"):
+            self.refuse("--focus-distance", value, "1e18 is infinity")
 
     def test_vectors(self):
         for option in ("--camera-position", "--camera-target", "--camera-up", "--background"):
@@ -225,6 +240,18 @@ class Devices(ProgramTest):
         nowhere = {"VK_DRIVER_FILES": "/nonexistent", "VK_ICD_FILENAMES": "/nonexistent"}
         self.assert_refused(["quad.json"], "VK_DRIVER_FILES is ./nonexistent.: unset it", code=2, environment=nowhere)
         self.assert_refused(["--list-devices"], "VK_DRIVER_FILES is ./nonexistent.: unset it", code=2, environment=nowhere)
+
+    def test_a_crash_under_a_limit_of_memory_names_it(self):
+        """Mesa crashes where it gets no memory. Here the signal comes from outside."""
+        limit = 64 << 30
+        for prepare, code, words in ((lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)), 3, "limit of memory is too low"),
+                                     (None, -signal.SIGSEGV, "")):
+            with self.start("quad.json", "--samples=4000000000", "--backend=compute", "--save-every=0.01", "--output=a.exr", prepare=prepare) as process:
+                self.wait_for(self.folder / "a.exr", process)
+                process.send_signal(signal.SIGSEGV)
+                err = process.communicate(timeout=300)[1]
+            self.assertEqual(process.returncode, code, err)
+            self.assertIn(words, err)
 
     def test_an_image_too_large_for_the_device_is_refused(self):
         arguments = ["quad.json", "--width=16384", "--height=16384", "--samples=1"]

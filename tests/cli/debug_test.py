@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest, copy_project  # first: it finds the tools
+from image_files import Exr
 from check import command as check_command
 from debug import command
 from project import CHAPTERS
@@ -300,7 +301,14 @@ class NativeFailures_all(CopiedLab, ProgramTest):
     def test_a_cache_that_cannot_be_written(self):
         process = self.render(XDG_CACHE_HOME=str(self.shader / "cache"))  # below a file; Mesa, too, says something
         self.assertEqual(process.returncode, 1)
-        self.assertRegex(process.stderr, r"(?m)^error: the backend native: .* set XDG_CACHE_HOME to a folder for its code$")
+        self.assertRegex(process.stderr, r"(?m)^error: the backend native: .* set XDG_CACHE_HOME to another folder for its code$")
+
+    def test_a_cache_without_room_for_its_code(self):
+        self.assertEqual(self.render().returncode, 0)
+        for code in (self.tree / "cache/path_tracing_lab").glob("native-*"):
+            code.unlink()
+            code.mkdir()  # fails at the same moment as a disk that is full
+        self.assert_error(self.render(), 1, "cannot be written", "make room there")
 
     def test_without_embree_the_own_tree_traces_the_rays(self):
         for arguments in ({}, {"LAB_WITHOUT_EMBREE": "1"}):
@@ -327,13 +335,31 @@ class NativeFailures_all(CopiedLab, ProgramTest):
         self.assert_error(self.render(), 3, "crashed", "--sanitize")
         self.assertEqual((self.tree / "picture.exr").read_bytes(), before)
 
+    def test_a_crash_keeps_the_last_snapshot(self):
+        """One path in a million crashes, after the first samples were saved."""
+        code = self.shader.read_text(encoding="utf-8")
+        self.shader.write_text(code.replace("return radiance;", "if (seed.x >> 12 == 77u) radiance *= float(triangles[seed.x | 0x80000000u].x); "
+                                            "return radiance;"), encoding="utf-8")
+        self.SIZE = ("--headless", "--width=32", "--height=32", "--samples=4000000000")
+        process = self.render("--save-every=0.001")
+        self.assert_error(process, 3, "crashed", "the outputs hold")
+        self.assertEqual(Exr(self.tree / "picture.exr").text("samples"), re.search(r"hold (\d+) samples", process.stderr)[1])
+
     def test_a_shader_that_overwrites_or_exhausts_the_stack_still_says_so(self):
         code = self.shader.read_text(encoding="utf-8")
         for size, last in ((4, 1023), (4000000, 4095)):
             with self.subTest(size):
                 self.shader.write_text(code.replace("return radiance;", f"float a[{size}]; a[seed.x & {last}u] = 1.0; "
                                                     f"return radiance * a[seed.y & {last}u];"), encoding="utf-8")
-                self.assert_error(self.render(LAB_LANES="0"), 3, "crashed", "--sanitize")  # lanes ask for each element
+                words = ("need more than the stack",) if size > last else ("crashed", "--sanitize")
+                self.assert_error(self.render(LAB_LANES="0"), 3, *words)  # lanes ask for each element
+
+    def test_lanes_that_exhaust_the_stack_say_so(self):
+        """Each of these arrays is small enough to run in lanes, and all together are larger than the stack."""
+        code = self.shader.read_text(encoding="utf-8")
+        arrays = "".join(f"float a{i}[30000]; a{i}[seed.x & 4095u] = 1.0; radiance *= a{i}[seed.y & 4095u]; " for i in range(20))
+        self.shader.write_text(code.replace("return radiance;", f"{arrays} return radiance;"), encoding="utf-8")
+        self.assert_error(self.render(), 3, "need more than the stack")
 
     def test_errors_of_a_shader_are_those_of_all_backends(self):
         self.shader.write_text(self.shader.read_text(encoding="utf-8").replace("vec3 radiance = vec3(0.0);", "vec3 radiance = nothing;"),

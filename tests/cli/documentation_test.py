@@ -46,6 +46,12 @@ def anchors(page):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
+def defines(text, function):
+    """Whether a source has a function's definition or declaration, and not only calls and comments."""
+    start = r"^ *(?:def|(?!return|else|new|throw|case)\w[\w:<>,*&\[\] ]*[\w>*&\]])"
+    return re.search(rf"{start} +[*&]?(?:\w+::)*{function}\(", text, re.MULTILINE) is not None
+
+
 def has_piece(text, piece):
     """Whether a source contains a quotation: names and calls() anywhere, longer pieces in exactly one place."""
     if re.fullmatch(r"\w+", piece):
@@ -106,6 +112,13 @@ class DocumentationTest(unittest.TestCase):
                 if (path.suffix in SOURCE_SUFFIXES or path.name == "lab") and "://" not in target:
                     quoted = has_piece(text_of(path), piece.replace("\\|", "|"))
                     self.assertTrue(quoted, f"{page.relative_to(ROOT)}: {target} has no, or more than one, `{piece}`")
+
+    def test_links_from_functions_lead_to_their_definitions(self):
+        text = sources(("common", "shaders", "chapters", "tools", "tests"))
+        for page in PAGES:
+            for name, target in re.findall(r"\[`(\w+)\(\)`\]\(([^)#\s]+)\)", text_of(page)):
+                if defines(text, name):  # or else the file shows a call of one that is not ours
+                    self.assertTrue(defines(text_of(page.parent / target), name), f"{page.relative_to(ROOT)}: {target} only calls {name}()")
 
     def test_code_that_is_named_exists(self):
         text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab") + text_of(ROOT / "tests/fresh_machine")

@@ -58,6 +58,12 @@ TEST(NativeLanes, KnowFunctionsOfVectorsAndMatrices) {
               std::pair(5u, std::string()));
 }
 
+// Its square would be 0.
+TEST(NativeLanes, KnowTheLengthOfOneNumber) {
+    EXPECT_EQ(result_and_reason("results[i] = uint(length(float(i) - 1e-30) * 1e31 + distance(float(i), 1e-30) * 1e31 + 0.5);"),
+              std::pair(20u, std::string()));
+}
+
 // More than 2^31 words: from 2^27 triangles on, of 64 bytes each.
 TEST(NativeLanes, ReachTheEndOfLargeArrays) {
     struct Element {
