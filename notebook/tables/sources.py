@@ -5,7 +5,8 @@ Comments and blanks do not count, and neither do chapters that a record does not
 """
 import re
 
-from project import CHAPTERS, rendered_description, shaders_of
+from includes import shaders_of
+from project import CHAPTERS, rendered_description
 from report.sources import digest, files_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.

@@ -11,7 +11,8 @@ from pathlib import Path
 from tools_path import PROJECT, TOOLS  # first: it finds the others
 from book import live
 from course.mistakes import bugs_of, complete, plant, records, shader_of
-from project import CHAPTERS, course, read_json, shaders_of, text_of
+from includes import shaders_of
+from project import CHAPTERS, course, read_json, text_of
 
 NODE, VALIDATOR = shutil.which("node"), shutil.which("glslangValidator")
 STACK = "BVH_STACK_SIZE 32"

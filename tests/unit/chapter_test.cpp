@@ -64,6 +64,7 @@ TEST(Chapter, MistakesAreNamed) {
         {"{\"title\": \"A\", \"tilte\": \"B\"}", "unknown key \"tilte\""},
         {"{\"title\": \"A\", \"dielectrics\": 1}", "must be true or false"},
         {"{\"title\": \"A\", \"check\": {\"scenes\": []}}", "unknown key \"scenes\" in \"check\""},
+        {"{\"title\": \"A\", \"continues\": \"00_nothing\"}", "is \"00_nothing\": name the folder of an earlier chapter"},
         {"{\"title\": \"A\", \"strategies\": [\"brdf\"]}", "has \"brdf\": use both, light, bounces"},
         {"{\"title\": \"A\", \"options\": \"--survival-cap\"}", "must be a list"},
         {"{\"title\": \"A\", \"options\": [7]}", "has 7: use"},

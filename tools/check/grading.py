@@ -12,7 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, shaders_of, show_progress, text_of
+from includes import named_files, shaders_of
+from project import CHAPTERS, KNOWLEDGE, ROOT, UserError, description, original, printable, read_json, show_progress, text_of
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, relative, run_case
@@ -85,7 +86,7 @@ def with_most_functions_of(file, shaders):
 
 
 def shader_named(chapter, file):
-    """The chapter's shader with the file's name, or None. Some only include one with the same name of another chapter: then the one whose
+    """The chapter's shader with the file's name, or None. Where it extends one with the same name of another chapter: the one whose
     functions the file has."""
     return with_most_functions_of(file, [shader for shader in shaders_of(int(chapter[:2])) if shader.name == file.name])[1]
 
@@ -124,8 +125,8 @@ def replacements(chapter, file, shader=None):
     own = {shader_named(chapter, other) or ROOT / "chapters" / chapter / other.name: other for other in others}
     places = own | {shader or shader_like(chapter, file): file}
     # What the chapter neither has nor may bring is included by these files only, and found beside them.
-    replaceable = {Path(name).name for name in read_json(ROOT / "shaders/replaceable.json")}
-    return [word for place, source in places.items() if place.exists() or place.name in replaceable
+    named = named_files(ROOT / "chapters" / chapter)
+    return [word for place, source in places.items() if place.exists() or place.name in named
             for word in replacement(place, source)]
 
 
