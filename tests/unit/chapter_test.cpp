@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "files/project_folder.h"
 #include "rendering/settings.h"
 #include "support/course_chapters.h"
 #include "test_files.h"
@@ -50,6 +51,23 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
             EXPECT_EQ(has_it, mentions("parameters." + parameter)) << name << " " << option_name;
         }
     }
+}
+
+TEST(Chapter, GetsWhatItLacksFromTheOneThatItContinues) {
+    int own = 0, others = 0;
+    for (const auto& name : course_chapters()) {
+        const Chapter chapter = load_chapter(name);
+        if (chapter.continues.empty()) continue;
+        const auto files = named_includes(estimator_of(chapter));
+        for (const auto& [include, file] : named_includes(estimator_of(load_chapter(chapter.continues)))) {
+            const auto place = project_folder() / "chapters" / name / include;
+            const bool is_own = std::filesystem::exists(place);
+            EXPECT_EQ(files.at(include), is_own ? place : file) << name;
+            ++(is_own ? own : others);
+        }
+    }
+    EXPECT_GT(own, 0);
+    EXPECT_GT(others, 0);
 }
 
 TEST(Chapter, MistakesAreNamed) {
