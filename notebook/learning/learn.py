@@ -11,13 +11,14 @@ import math
 from statistics import fmean
 from threading import Lock
 
+import project
 from check import grading
 from check.diagnosis import observe
 from check.experiments import experiments_of, pictures, together
 from check.names import ratios_of
 from course.mistakes import catalogue, own_shader
 from includes import shaders_of
-from project import CHAPTERS, Parser, add_device_options, chapter_named, number, read_json, write_json
+from project import CHAPTERS, Parser, add_device_options, number, read_json, write_json
 from report.batch import Batch, run_all
 from report.sources import code
 from tables.records import NOTEBOOK
@@ -26,7 +27,7 @@ GOES_ON = True
 # Levels use the seeds of a check without --seed, see grading.first_seed(); the others use seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0)}
 # The chapter that a chapter should beat in noise with the same samples, if that is its lesson.
-GAINS_OVER = {number: int(chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
+GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in grading.DESCRIPTIONS.items()
               if "gains_over" in says.get("check", {})}
 OWN_SEED, OWN_PICTURES, MISTAKE_SEED = 5001, 4, 6001  # of experiments
 
