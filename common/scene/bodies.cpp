@@ -165,15 +165,18 @@ dvec3 point_on(const Scene& scene, const Body& body) {
     return (a + b + c) / 3.0;
 }
 
-// Whether the segment from p to q runs through a triangle.
-bool pierces(const dvec3& p, const dvec3& q, const std::array<dvec3, 3>& triangle) {
-    const auto volume = [](const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& d) {
-        return glm::dot(a - d, glm::cross(b - d, c - d));
-    };
+// Where the segment from p to q meets a triangle, unless it only touches the triangle's plane with an end.
+std::optional<dvec3> crossing(const dvec3& p, const dvec3& q, const std::array<dvec3, 3>& triangle, double tolerance) {
     const auto& [a, b, c] = triangle;
-    if ((volume(a, b, c, p) > 0) == (volume(a, b, c, q) > 0)) return false;
-    const bool side = volume(p, q, a, b) > 0;
-    return side == (volume(p, q, b, c) > 0) && side == (volume(p, q, c, a) > 0);
+    const dvec3 normal = glm::normalize(glm::cross(b - a, c - a));
+    const double from = glm::dot(p - a, normal), to = glm::dot(q - a, normal);
+    if (!(std::min(from, to) < -tolerance && std::max(from, to) > tolerance)) return std::nullopt;
+    const dvec3 point = p + from / (from - to) * (q - p);
+    const auto is_inside = [&](const dvec3& corner, const dvec3& next) {
+        const dvec3 edge = next - corner;
+        return glm::dot(normal, glm::cross(edge, point - corner)) > -tolerance * glm::length(edge);
+    };
+    return is_inside(a, b) && is_inside(b, c) && is_inside(c, a) ? std::optional(point) : std::nullopt;
 }
 
 std::vector<Bounds> boxes_of(const Scene& scene, const Body& body) {
@@ -183,18 +186,6 @@ std::vector<Bounds> boxes_of(const Scene& scene, const Body& body) {
         for (const dvec3& corner : world_corners(scene, body, triangle)) boxes.back().grow(vec3(corner));
     }
     return boxes;
-}
-
-bool cross_each_other(const Scene& scene, const Body& a, const Body& b) {
-    const Bounds space{glm::max(a.bounds.low, b.bounds.low), glm::min(a.bounds.high, b.bounds.high)};
-    bool is_found = false;
-    for_each_overlap(boxes_of(scene, a), boxes_of(scene, b), space, [&](uint32_t i, uint32_t j) {
-        if (is_found) return;
-        const auto x = world_corners(scene, a, a.triangles[i]), y = world_corners(scene, b, b.triangles[j]);
-        for (size_t k = 0; k < 3; ++k)
-            is_found = is_found || pierces(x[k], x[(k + 1) % 3], y) || pierces(y[k], y[(k + 1) % 3], x);
-    });
-    return is_found;
 }
 
 const std::string& file_of(const Scene& scene, const Body& body) { return scene.mesh_of(body.instance).file; }
@@ -273,6 +264,35 @@ void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies) {
         scene.warnings.push_back(file_of(scene, body) + ": the fronts of its glass face inwards: turned around");
     }
 }
+
+namespace {
+
+// Whether the surface of one body runs through that of another. Where they meet only at corners or edges, it does not.
+bool cross_each_other(const Scene& scene, const Body& a, const Body& b) {
+    const Bounds space{glm::max(a.bounds.low, b.bounds.low), glm::min(a.bounds.high, b.bounds.high)};
+    // Below the distance by which contacts.h separates what touches, and above the rounding errors of positions.
+    const dvec3 largest = glm::max(glm::abs(dvec3(space.low)), glm::abs(dvec3(space.high)));
+    const double tolerance = 8 * 0x1p-24 * (largest.x + largest.y + largest.z);
+    bool is_found = false;
+    const auto search = [&](const std::array<dvec3, 3>& edges, const std::array<dvec3, 3>& triangle, const Body& of_triangle) {
+        for (size_t k = 0; k < 3 && !is_found; ++k) {
+            const dvec3 &p = edges[k], &q = edges[(k + 1) % 3];
+            const auto point = crossing(p, q, triangle, tolerance);
+            if (!point) continue;
+            const dvec3 step = 2 * tolerance * glm::normalize(q - p);
+            is_found = encloses(scene, of_triangle, *point - step) != encloses(scene, of_triangle, *point + step);
+        }
+    };
+    for_each_overlap(boxes_of(scene, a), boxes_of(scene, b), space, [&](uint32_t i, uint32_t j) {
+        if (is_found) return;
+        const auto x = world_corners(scene, a, a.triangles[i]), y = world_corners(scene, b, b.triangles[j]);
+        search(x, y, b);
+        search(y, x, a);
+    });
+    return is_found;
+}
+
+}  // namespace
 
 void nest_bodies(const Scene& scene, std::vector<Body>& bodies) {
     for (uint32_t i = 0; i < bodies.size(); ++i) {

@@ -78,6 +78,23 @@ bool touch(const Face& a, const Face& b) {
     return true;
 }
 
+// Whether a corner of one triangle lies on the other.
+bool touch_at_a_corner(const Face& a, const Face& b) {
+    const double tolerance = 2 * std::max(a.offset, b.offset);
+    const auto is_on = [&](const Face& face, const dvec3& corner) {
+        const auto& c = face.corners;
+        const dvec3 normal = glm::normalize(glm::cross(c[1] - c[0], c[2] - c[0]));
+        if (std::abs(glm::dot(corner - c[0], normal)) > tolerance) return false;
+        for (size_t i = 0; i < 3; ++i) {
+            const dvec3 edge = c[(i + 1) % 3] - c[i];
+            if (glm::dot(normal, glm::cross(edge, corner - c[i])) < -tolerance * glm::length(edge)) return false;
+        }
+        return true;
+    };
+    return std::ranges::any_of(b.corners, [&](const dvec3& corner) { return is_on(a, corner); }) ||
+           std::ranges::any_of(a.corners, [&](const dvec3& corner) { return is_on(b, corner); });
+}
+
 // How far a triangle moves.
 struct Move {
     dvec3 direction{0};
@@ -154,17 +171,23 @@ class Separation {
                (scene_.microfacets.empty() && std::memcmp(&scene_.materials[a], &scene_.materials[b], sizeof(Material)) == 0);
     }
 
-    // Moves triangles of the later group that touch the earlier one.
+    // Moves triangles of the later group that touch the earlier one. A ball in a box does so with corners.
     void compare(const Group& earlier, Group& later) {
+        if (!compare(earlier, later, touch) && earlier.body && later.body) compare(earlier, later, touch_at_a_corner);
+    }
+
+    bool compare(const Group& earlier, Group& later, bool (*touches)(const Face&, const Face&)) {
         // In one mesh, only lamps are told from what is dark. Elsewhere, two that look the same need no order.
         const bool is_decoration = !later.body && !later.emits;
-        if (!later.body && earlier.emits == later.emits && earlier.instance == later.instance) return;
-        if (is_decoration && look_the_same(earlier.material, later.material)) return;
+        if (!later.body && earlier.emits == later.emits && earlier.instance == later.instance) return false;
+        if (is_decoration && look_the_same(earlier.material, later.material)) return false;
+        bool is_found = false;
         const Bounds space{glm::max(earlier.bounds.low, later.bounds.low), glm::min(earlier.bounds.high, later.bounds.high)};
         for_each_overlap(earlier.boxes, later.boxes, space, [&](uint32_t i, uint32_t j) {
             const Face a = make_face(scene_, earlier.instance, earlier.triangles[i]);
             const Face b = make_face(scene_, later.instance, later.triangles[j]);
-            if (!touch(a, b)) return;
+            if (!touches(a, b)) return;
+            is_found = true;
             const bool faces_the_same_way = glm::dot(a.normal, b.normal) > 0;
             if (is_decoration && !faces_the_same_way) return;  // as a box that stands on a floor
             if (earlier.instance == later.instance && is_double_sided(earlier.triangles[i], later.triangles[j])) return;
@@ -176,6 +199,7 @@ class Separation {
             move.distance = std::max(move.distance, (follows ? before->second.distance : 0) + 6 * std::max(a.offset, b.offset));
             if (!later.body && later.emits == earlier.emits && faces_the_same_way) note(earlier, later);
         });
+        return is_found;
     }
 
     void note(const Group& earlier, const Group& later) {

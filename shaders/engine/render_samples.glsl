@@ -15,6 +15,9 @@ layout(scalar, set = 0, binding = BINDING_RAY_COUNTERS) buffer RayCounters { uin
 #include "world/shading_data.glsl"
 #include "world/materials.glsl"
 #include "world/lights.glsl"
+#ifdef FEATURE_MEDIA
+#include "world/boundaries.glsl"
+#endif
 #include "blocks.glsl"
 #include "film.glsl"
 

@@ -12,9 +12,9 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     bool is_hit = trace_ray(ray, NO_LIMIT, hit);
 #ifdef FEATURE_OPEN_BOUNDARIES
     float passed = 0.0;
-    while (is_hit && get_boundary(hit.instance, hit.triangle).kind == BOUNDARY_OPEN) {  // there is nothing to see
+    while (is_hit && is_open_boundary(hit)) {  // there is nothing to see
         passed += hit.distance;
-        ray = get_ray_from_surface(get_shading_data(hit, ray.direction), ray.direction);
+        ray = get_ray_behind(hit, ray.direction);
         is_hit = trace_ray(ray, NO_LIMIT, hit);
     }
     hit.distance += passed;

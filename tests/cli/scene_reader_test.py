@@ -315,6 +315,7 @@ class BodiesTest(ProgramTest):
                              ("touches or overlaps", [whole, (box([0, 0, 0], 1, "glass.mtl"), None)]),
                              ("touches or overlaps", [whole, (box([0, -10.0003, 0], 9), None)]),
                              ("touches or overlaps", [floor, whole]),
+                             ("16 open boundaries", [(box([3 * i, 0, 0], 1), 1) for i in range(17)]),
                              ("inwards", [(box([0, 0, 0], 1, "glass.mtl", "3421 6875 2651 7843 5731 4862"), 1)])):
             with self.subTest(what=what, meshes=len(meshes)):
                 with self.assertRaisesRegex(UserError, rf"\A[^\n]*scene.json: [^\n]* around \([^\n]*{what}[^\n]*\Z"):

@@ -15,38 +15,35 @@ namespace {
 using glm::dvec3;
 using testing::IsSubstring;
 
-struct Box {
-    vec3 low, high;
-};
-
-bool contains(const Box& box, const dvec3& point) {
-    return glm::all(glm::lessThan(dvec3(box.low), point)) && glm::all(glm::lessThan(point, dvec3(box.high)));
+bool contains(const Solid& solid, const dvec3& point) {
+    return std::ranges::all_of(solid.faces, [&](const std::vector<int>& face) {
+        const auto corner = [&](size_t i) { return dvec3(solid.corners[static_cast<size_t>(face[i])]); };
+        return glm::dot(point - corner(0), glm::cross(corner(1) - corner(0), corner(2) - corner(0))) < 0;
+    });
 }
 
-float volume(const Box& box) {
-    const vec3 size = box.high - box.low;
-    return size.x * size.y * size.z;
-}
-
-std::string box_text(const Box& box, int first, bool is_inside_out = false) {
-    return lab::box_text(box.low, box.high, first, is_inside_out);
-}
-
-// Random boxes: each is divided into boxes that touch it and each other, or contains smaller ones that do not.
-class RandomBoxes {
+// Random boxes and balls: each box is divided into bodies that touch it and each other, or contains smaller ones that do not.
+class RandomBodies {
   public:
-    explicit RandomBoxes(unsigned seed) : random_(seed) { divide({vec3(-8), vec3(8)}, 3); }
-    const std::vector<Box>& boxes() const { return boxes_; }
+    explicit RandomBodies(unsigned seed) : random_(seed) { divide({vec3(-8), vec3(8)}, 3); }
+
+    std::vector<Solid> solids;
+    std::vector<float> volumes;
 
   private:
+    struct Box {
+        vec3 low, high;
+    };
     int choose(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
 
     void divide(const Box& box, int depth) {
-        const bool shrinks = choose(2) == 0;
-        const float margin = shrinks ? 0.25f : 0;
+        const float margin = choose(2) == 0 ? 0.25f : 0;
         const Box inner{box.low + margin, box.high - margin};
-        boxes_.push_back(inner);
-        if (depth == 0 || glm::any(glm::lessThan(inner.high - inner.low, vec3(1.5f)))) return;
+        const vec3 size = inner.high - inner.low;
+        const bool is_ball = depth < 3 && choose(3) == 0;
+        solids.push_back((is_ball ? make_ball : make_box)(inner.low, inner.high));
+        volumes.push_back(size.x * size.y * size.z * (is_ball ? 0.5f : 1));  // a ball has less, and contains no others
+        if (is_ball || depth == 0 || glm::any(glm::lessThan(size, vec3(1.5f)))) return;
         const int axis = choose(3);
         Box half = inner;
         half.high[axis] = 0.5f * (inner.low[axis] + inner.high[axis]);
@@ -57,7 +54,6 @@ class RandomBoxes {
     }
 
     std::mt19937 random_;
-    std::vector<Box> boxes_;
 };
 
 // The medium around a point, as the next boundary on a ray has it, in double precision.
@@ -107,41 +103,46 @@ TEST_F(Bodies, AreTheSmallestAroundAPoint) {
     std::uniform_real_distribution<double> uniform(0, 1);
     size_t points = 0;
     for (unsigned seed = 0; points < 100'000; ++seed) {
-        const std::vector<Box> boxes = RandomBoxes(seed).boxes();
+        const RandomBodies bodies(seed);
+        const std::vector<Solid>& solids = bodies.solids;
         // In any order; some are mirrored, some inside out, and every second scene has all in one mesh.
-        std::vector<size_t> order(boxes.size());
+        std::vector<size_t> order(solids.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = i;
         std::ranges::shuffle(order, random);
         std::string meshes, together;
+        int corner_count = 0;
         const bool is_one_mesh = seed % 2 == 1;
         for (size_t k = 0; k < order.size(); ++k) {
-            const Box& box = boxes[order[k]];
-            const std::string file = "box" + std::to_string(k) + ".obj";
+            const Solid& solid = solids[order[k]];
+            const std::string file = "body" + std::to_string(k) + ".obj";
             const bool is_inside_out = !is_one_mesh && random() % 4 == 0, is_mirrored = random() % 4 == 0;
-            const Box placed = is_mirrored ? Box{{-box.high.x, box.low.y, box.low.z}, {-box.low.x, box.high.y, box.high.z}} : box;
-            write(file, box_text(placed, 1, is_inside_out));
-            together += box_text(box, static_cast<int>(8 * k + 1), is_inside_out);
+            Solid placed = solid;
+            for (vec3& corner : placed.corners) corner.x *= is_mirrored ? -1 : 1;
+            write(file, obj_text(placed, 1, is_inside_out != is_mirrored));
+            together += obj_text(solid, corner_count + 1);
+            corner_count += static_cast<int>(solid.corners.size());
             meshes +=
                 (k > 0 ? "," : "") + open(file, static_cast<double>(order[k] + 1), is_mirrored ? R"(, "scale": [-1, 1, 1])" : "");
         }
         write("together.obj", together);
         const Scene scene = load(is_one_mesh ? open("together.obj") : meshes);
-        ASSERT_EQ(find_bodies(scene).size(), boxes.size()) << seed;
+        ASSERT_EQ(find_bodies(scene).size(), solids.size()) << seed;
         ASSERT_TRUE(scene.warnings.empty()) << scene.warnings[0];
         // The larger the index of a medium, the smaller its body: so volumes tell bodies of one mesh apart, as far as they
         // differ.
         for (int i = 0; i < 400; ++i, ++points) {
             // A point beside a face, which others may touch.
-            const Box& box = boxes[random() % boxes.size()];
-            dvec3 point;
-            for (int axis = 0; axis < 3; ++axis)
-                point[axis] = glm::mix(double{box.low[axis]}, double{box.high[axis]}, uniform(random));
-            const int axis = static_cast<int>(random() % 3);
-            point[axis] = (random() % 2 ? box.low : box.high)[axis] + (random() % 2 ? 0.02 : -0.02);
+            const Solid& solid = solids[random() % solids.size()];
+            const std::vector<int>& face = solid.faces[random() % solid.faces.size()];
+            const auto corner = [&](size_t k) { return dvec3(solid.corners[static_cast<size_t>(face[k])]); };
+            const double u = std::sqrt(uniform(random)), v = uniform(random);
+            const dvec3 edge_1 = corner(1) - corner(0), edge_2 = corner(face.size() - 1) - corner(0);
+            const dvec3 normal = glm::normalize(glm::cross(edge_1, edge_2));
+            const dvec3 point = corner(0) + u * (1 - v) * edge_1 + u * v * edge_2 + (random() % 2 ? 0.02 : -0.02) * normal;
             const dvec3 direction(uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5);
             std::optional<size_t> expected;
-            for (size_t k = 0; k < boxes.size(); ++k)
-                if (contains(boxes[k], point) && (!expected || volume(boxes[k]) <= volume(boxes[*expected]))) expected = k;
+            for (size_t k = 0; k < solids.size(); ++k)
+                if (contains(solids[k], point) && (!expected || bodies.volumes[k] <= bodies.volumes[*expected])) expected = k;
             const uint32_t medium = medium_by_ray(scene, point, direction);
             if (is_one_mesh)
                 ASSERT_EQ(medium == 0, !expected) << seed << ", " << i;
@@ -155,9 +156,9 @@ TEST_F(Bodies, AreTheSmallestAroundAPoint) {
 
 TEST_F(Bodies, OpaqueTrianglesBoundNothing) {
     // A room with its walls inwards, a vase of glass and an opaque box, all in one mesh.
-    write("room.obj", box_text({vec3(-5), vec3(5)}, 1, true) + box_text({vec3(2), vec3(3)}, 9) + "usemtl glass\n" +
-                          box_text({vec3(-1), vec3(1)}, 17));
-    write("milk.obj", box_text({vec3(-0.5f), vec3(0.5f)}, 1), "glass");
+    write("room.obj", box_text(vec3(-5), vec3(5), 1, true) + box_text(vec3(2), vec3(3), 9) + "usemtl glass\n" +
+                          box_text(vec3(-1), vec3(1), 17));
+    write("milk.obj", box_text(vec3(-0.5f), vec3(0.5f), 1), "glass");
     const Scene scene = load(R"({"file": "room.obj"}, {"file": "milk.obj", "medium": {"extinction": 3, "albedo": 1}})",
                              R"(, "fog": {"extinction": 7, "albedo": 1})");
     ASSERT_EQ(scene.media.size(), 3u);
@@ -172,7 +173,7 @@ TEST_F(Bodies, OpaqueTrianglesBoundNothing) {
 }
 
 TEST_F(Bodies, ACavityInGlassIsFilledByWhatIsAroundTheGlass) {
-    write("hollow.obj", box_text({vec3(-2), vec3(2)}, 1) + box_text({vec3(-1), vec3(1)}, 9, true), "glass");
+    write("hollow.obj", box_text(vec3(-2), vec3(2), 1) + box_text(vec3(-1), vec3(1), 9, true), "glass");
     const Scene scene = load(R"({"file": "hollow.obj"})", R"(, "fog": {"extinction": 7, "albedo": 1})");
     const auto extinction_at = [&](double z) { return scene.media[medium_by_ray(scene, {0.1, 0.2, z}, {0, 0, 1})].extinction; };
     EXPECT_EQ(extinction_at(-3), 7);
@@ -183,7 +184,7 @@ TEST_F(Bodies, ACavityInGlassIsFilledByWhatIsAroundTheGlass) {
 }
 
 TEST_F(Bodies, InsideOutGlassIsTurnedAround) {
-    write("a.obj", box_text({vec3(-1), vec3(1)}, 1, true), "glass");
+    write("a.obj", box_text(vec3(-1), vec3(1), 1, true), "glass");
     const Scene scene = load(R"({"file": "a.obj"}, {"file": "a.obj", "translation": [5, 0, 0]})");
     ASSERT_EQ(scene.warnings.size(), 2u);
     EXPECT_PRED_FORMAT2(IsSubstring, "face inwards: turned around", scene.warnings[0]);
@@ -191,10 +192,10 @@ TEST_F(Bodies, InsideOutGlassIsTurnedAround) {
 }
 
 TEST_F(Bodies, HolesAndOverlapsAreNoted) {
-    const std::string box = box_text({vec3(0), vec3(2)}, 1);
+    const std::string box = box_text(vec3(0), vec3(2), 1);
     write("hole.obj", box.substr(0, box.rfind("f ")));
     write("box.obj", box);
-    write("bar.obj", box_text({{0.5f, 0.5f, -1}, {1, 1, 5}}, 1));
+    write("bar.obj", box_text({0.5f, 0.5f, -1}, {1, 1, 5}));
     auto notes = load(open("hole.obj")).warnings;
     ASSERT_EQ(notes.size(), 1u);
     EXPECT_PRED_FORMAT2(IsSubstring, "hole.obj: the boundary of its medium is not closed: it has 4 open edges", notes[0]);
@@ -203,7 +204,15 @@ TEST_F(Bodies, HolesAndOverlapsAreNoted) {
     EXPECT_PRED_FORMAT2(IsSubstring, "overlaps with", notes[0]);
     EXPECT_PRED_FORMAT2(IsSubstring, "smaller one, ", notes[0]);
     EXPECT_TRUE(notes[0].ends_with("bar.obj")) << notes[0];
-    EXPECT_TRUE(load(open("box.obj") + "," + open("box.obj", 1, R"(, "translation": [3, 0, 0])")).warnings.empty());
+    for (const char* other : {"[1, 1, 1]", "[1, 0, 0]"}) {
+        notes = load(open("box.obj") + "," + open("box.obj", 1, R"(, "translation": )" + std::string(other))).warnings;
+        ASSERT_EQ(notes.size(), 1u) << other;
+        EXPECT_PRED_FORMAT2(IsSubstring, "overlaps with", notes[0]);
+    }
+    for (const char* other : {"[2, 0, 0]", "[2, 2, 0]", "[2, 2, 2]", "[2, 1, 1]", "[3, 0, 0]"}) {
+        notes = load(open("box.obj") + "," + open("box.obj", 1, R"(, "translation": )" + std::string(other))).warnings;
+        EXPECT_TRUE(notes.empty()) << other << notes[0];
+    }
 }
 
 // The heights of all corners of an instance.
@@ -221,7 +230,7 @@ const std::string rug_text = "v -1 0 -1\nv -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3 4\
 
 TEST_F(Bodies, ThatTouchSomethingMoveInwards) {
     write("floor.obj", floor_text);
-    write("box.obj", box_text({vec3(0), vec3(2)}, 1), "glass");
+    write("box.obj", box_text(vec3(0), vec3(2), 1), "glass");
     const Scene scene = load(R"({"file": "box.obj"}, {"file": "floor.obj"}, {"file": "box.obj", "translation": [0, 3, 0]})");
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_GT(heights(scene, 0).front(), 0);
@@ -231,7 +240,7 @@ TEST_F(Bodies, ThatTouchSomethingMoveInwards) {
 }
 
 TEST_F(Bodies, OfWhichOneFillsTheOtherLieInside) {
-    write("box.obj", box_text({vec3(0), vec3(2)}, 1), "glass");
+    write("box.obj", box_text(vec3(0), vec3(2), 1), "glass");
     for (const bool is_first : {false, true}) {
         const std::string glass = R"({"file": "box.obj"})", medium = open("box.obj", 3);
         const Scene scene = load(is_first ? medium + "," + glass : glass + "," + medium);
@@ -260,7 +269,7 @@ TEST_F(Bodies, OpaqueSurfacesInOnePlaneAreShownInTheirOrder) {
     write("floor.obj", floor_text);
     write("rug.obj", rug_text, "red");
     write("grey_rug.obj", rug_text);
-    write("crate.obj", box_text({vec3(0), vec3(2)}, 1), "red");
+    write("crate.obj", box_text(vec3(0), vec3(2), 1), "red");
     const std::string floor = R"({"file": "floor.obj"})", rug = R"({"file": "rug.obj"})";
     const Scene scene = load(floor + "," + rug);
     ASSERT_EQ(scene.warnings.size(), 1u);

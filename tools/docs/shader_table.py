@@ -15,6 +15,7 @@ TOPICS = {  # heading: sources
     "Random numbers": ["shaders/world/random.glsl", "shaders/world/random_words.glsl"],
     "Materials": ["shaders/world/scene.glsl", "shaders/world/brdf.glsl", "shaders/world/materials.glsl", "shaders/world/materials/phong.glsl"],
     "Lights and the background": ["shaders/world/lights.glsl", "shaders/world/background.glsl", "shaders/world/light_probe.glsl"],
+    "Media": ["shaders/world/boundaries.glsl"],
     "Options and constants": ["shaders/world/constants.glsl", INTERFACE],
 }
 NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|#include[^\n]*", re.DOTALL)

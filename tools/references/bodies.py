@@ -13,6 +13,7 @@ from references.meshes import triangle_normals
 TOUCHING = 4e-4  # in the largest coordinate: twice what Mitsuba moves a ray by
 ASIDE = 1e-7  # from a surface to where its sides are asked for, in the largest coordinate
 ASKED = 16  # triangles of a body, or a few more
+MOST_OPEN = 16  # bodies: behind 20 open ones Mitsuba 3 shows 0.33 of a light of 0.35, and behind 26 hardly any
 
 
 @dataclass(eq=False)
@@ -76,6 +77,9 @@ def pierce(first, second):
 class Bodies:
     def __init__(self, path, fog, positions, bodies):
         self.path, self.fog, self.bodies = path, fog, sorted(bodies, key=lambda body: -abs(body.volume))
+        open_bodies = [body for body in self.bodies if body.is_open]
+        if len(open_bodies) > MOST_OPEN:
+            self.refuse(open_bodies[0], f"Mitsuba loses light behind more than {MOST_OPEN} open boundaries, and there are {len(open_bodies)}")
         owners = np.full(len(positions), -1)
         for i, body in enumerate(self.bodies):
             owners[body.triangles] = i
