@@ -2,7 +2,6 @@
 import argparse
 import json
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -78,16 +77,6 @@ def text_of(file):
         return file.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
         return file.read_text(encoding="cp1252", errors="replace")
-
-
-def shaders_of(number):
-    """The shaders that make up a chapter: those in its folder, and those of other chapters that they include."""
-    shaders = sorted((ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl"))
-    for shader in shaders:  # grows meanwhile
-        for name in re.findall(r'^#include "(.*)"', text_of(shader), re.MULTILINE):
-            files = [folder / name for folder in (shader.parent, ROOT / "chapters")]
-            shaders += [file for file in files if file.is_file() and file not in shaders][:1]
-    return shaders
 
 
 def has_low_discrepancy(program):

@@ -7,21 +7,21 @@ struct Path {
     Ray ray;  // x_{k-1}, ω_{k-1}
     vec3 radiance;
     vec3 throughput;
-    uint path_length;       // the slides' k-1
-    float radiance_scale;   // 1/η² for every medium entered, see chapter 6
-    bool is_light_sampled;  // whether x_{k-1}'s light sample could have found what the ray hits
-    float bounce_density;   // p_b of the ray's direction, if so
+    uint path_length;      // the slides' k-1
+    float radiance_scale;  // 1/η² for every medium entered, see chapter 6
+    Receiver receiver;     // x_{k-1}, as its light sample sees it
+    float bounce_density;  // p_b of the ray's direction, if a light sample could have found it
 };
 
 // A path that begins with this camera ray.
-Path start_path(Ray ray) { return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0); }
+Path start_path(Ray ray) { return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, NO_RECEIVER, 0.0); }
 
 // Extends the path by one bounce and adds the radiance that it finds. Returns false where the path ends.
 bool extend_path(inout Path path, inout uvec2 seed) {
     // Trace the ray x_{k-1}, ω_{k-1}. If it misses all triangles, it sees the background.
     Hit hit;
     if (!trace_ray(path.ray, NO_LIMIT, hit)) {
-        float light_density = path.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
+        float light_density = path.receiver.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
         if (is_counted(path.path_length))
             path.radiance += path.radiance_scale * path.throughput *
                              get_bounce_part(light_density, path.bounce_density) *
@@ -33,15 +33,17 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     ShadingData s = get_shading_data(hit, path.ray.direction);
     path.throughput *= s.transmittance;
     float cos_light = dot(s.geometric_normal, s.out_direction);
-    float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, hit.distance, cos_light) : 0.0;
+    float light_density = 0.0;
+    if (path.receiver.is_light_sampled)
+        light_density = to_solid_angle(get_light_density(path.receiver, s), hit.distance, cos_light);
     if (is_counted(path.path_length))
         path.radiance += path.radiance_scale * path.throughput *
                          get_bounce_part(light_density, path.bounce_density) * s.emission;
     if (path.path_length == parameters.max_path_length || !is_above_surface(s, s.out_direction)) return false;
 
-    // The direct light at x_k arrives after one more bounce. No light sample meets a dielectric's directions.
-    path.is_light_sampled = STRATEGY != STRATEGY_BOUNCES && !s.is_dielectric;
-    if (path.is_light_sampled) {
+    // The direct light at x_k arrives after one more bounce.
+    path.receiver = get_receiver(s);
+    if (path.receiver.is_light_sampled) {
         vec3 direct_light = sample_direct_light(s, seed);
         if (is_counted(path.path_length + 1u)) path.radiance += path.radiance_scale * path.throughput * direct_light;
     }

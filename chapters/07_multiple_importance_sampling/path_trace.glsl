@@ -10,6 +10,7 @@
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "sample_bsdf.glsl"
+#include "choose_light.glsl"
 #include "weights.glsl"
 
 // Light samples go to the light triangles. The background is left to bounces.

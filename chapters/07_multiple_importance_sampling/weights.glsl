@@ -21,7 +21,7 @@ vec3 get_light_sample_weight(ShadingData s, vec3 omega, float light_density) {
 vec3 sample_light_triangle(ShadingData s, inout uvec2 seed) {
     // A uniform point on a triangle chosen with probability P: density P/A with respect to area.
     vec2 u;
-    LightTriangle light = choose_light_triangle(seed, u);
+    LightTriangle light = choose_light(s, seed, u);
     LightPoint y = get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
 
     // Both cosines must be positive. Lights emit from the front only.

@@ -6,7 +6,8 @@
 // the probe; the densities include the probability of that choice.
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
-#include "07_multiple_importance_sampling/sample_bsdf.glsl"
+#include "sample_bsdf.glsl"
+#include "choose_light.glsl"
 #include "07_multiple_importance_sampling/weights.glsl"
 #include "light_probe_sampling.glsl"
-#include "07_multiple_importance_sampling/extend_path.glsl"
+#include "extend_path.glsl"

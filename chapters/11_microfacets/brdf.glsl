@@ -1,7 +1,4 @@
 // How surfaces scatter light: by microfacets if the material has them, else as in earlier chapters.
-#define get_brdf get_smooth_brdf
-#include "world/brdf.glsl"
-#undef get_brdf
 #include "microfacets.glsl"
 
 // ρ(x, ω_i, ω_o). Only rough glass has light from below the surface.
@@ -10,5 +7,9 @@ vec3 get_brdf(ShadingData s, vec3 in_direction) {
     if (s.is_rough_dielectric) return vec3(get_rough_dielectric_bsdf(s, in_direction));
     if (s.roughness > 0.0) return get_opaque_brdf(s, in_direction);
 #endif
-    return get_smooth_brdf(s, in_direction);
+#ifdef FEATURE_SPECULAR
+    return s.diffuse_albedo / PI + get_phong_brdf(s, in_direction);
+#else
+    return s.diffuse_albedo / PI;
+#endif
 }

@@ -5,9 +5,7 @@
 // normal, and Smith's G how many of those light reaches from both sides. A bounce samples a normal m and goes where a
 // smooth facet with this normal would send it. Best are the normals that are visible from ω_o: then all that is left for
 // the weight is Fresnel's F and the share of facets in shadow.
-#include "02_cosine_sampling/sample_hemisphere.glsl"
-#include "06_dielectrics/dielectric.glsl"
-#include "sample_bsdf.glsl"
-#include "07_multiple_importance_sampling/weights.glsl"
-#include "08_light_probes/light_probe_sampling.glsl"
-#include "07_multiple_importance_sampling/extend_path.glsl"
+//
+// How much light a rough surface scatters is in brdf.glsl in this folder, how a bounce leaves it in sample_bsdf.glsl. The rest of
+// the path is that of chapter 10.
+#include "08_light_probes/path_trace.glsl"

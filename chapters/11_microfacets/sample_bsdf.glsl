@@ -1,10 +1,5 @@
 // Bounces that follow microfacets: sample the normal of a facet, then reflect or refract at it. Elsewhere they are those of
 // chapter 7.
-#define get_bsdf_density get_smooth_density
-#define sample_bsdf sample_smooth_bsdf
-#include "07_multiple_importance_sampling/sample_bsdf.glsl"
-#undef get_bsdf_density
-#undef sample_bsdf
 #include "sample_normal.glsl"
 #ifdef FEATURE_MICROFACETS
 
@@ -68,18 +63,33 @@ BsdfSample sample_microfacets(ShadingData s, inout uvec2 seed) {
 }
 #endif
 
-// The density with which sample_bsdf() takes a direction, with respect to solid angle.
+// The density of sample_bsdf() with respect to solid angle.
 float get_bsdf_density(ShadingData s, vec3 in_direction) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return get_microfacet_density(s, in_direction);
 #endif
-    return get_smooth_density(s, in_direction);
+    float density = dot(s.normal, in_direction) / PI;
+#ifdef FEATURE_SPECULAR
+    density = mix(density, get_phong_density(s, in_direction), get_phong_probability(s));
+#endif
+    return density;
 }
 
-// Samples the next direction as the material scatters light, whatever it is.
+// Samples ω_k as the material scatters light, whatever it is.
 BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return sample_microfacets(s, seed);
 #endif
-    return sample_smooth_bsdf(s, seed);
+    if (s.is_dielectric) return sample_dielectric(s, seed);
+    bool is_from_lobe = false;
+    vec3 omega;
+#ifdef FEATURE_SPECULAR
+    is_from_lobe = happens(get_phong_probability(s), seed);
+    if (is_from_lobe) omega = sample_phong(s, get_random_numbers(seed));
+#endif
+    if (!is_from_lobe) omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
+    // The weight ρ n·ω / p_b = π ρ · (n·ω / π) / p_b: exactly π ρ where p_b is the cosine's density.
+    float density = get_bsdf_density(s, omega);
+    vec3 weight = PI * get_brdf(s, omega) * (dot(s.normal, omega) / PI / density);
+    return BsdfSample(omega, is_above_surface(s, omega) ? weight : vec3(0.0), density, false, 1.0);
 }

@@ -1,7 +1,8 @@
-// Three ways to sample a direction: by the normal of a visible facet, by that of any facet, and by the cosine alone.
-const uint SAMPLES_VISIBLE_NORMALS = 0u;
-const uint SAMPLES_NORMALS = 1u;
-const uint SAMPLES_COSINES = 2u;  // glass takes visible normals then, since it has no diffuse light
+// Three ways to sample a direction.
+const uint SAMPLES_VISIBLE_NORMALS = 0u;  // by the normal of a visible facet
+const uint SAMPLES_NORMALS = 1u;          // by that of any facet
+const uint SAMPLES_COSINES = 2u;          // by the cosine alone, but glass, without diffuse light, still by visible normals
+// The one that --facet-sampling chooses.
 #ifndef FACET_SAMPLING
 #define FACET_SAMPLING SAMPLES_VISIBLE_NORMALS
 #endif

@@ -1,4 +1,12 @@
-// The path loop in media.
+// The path loop in media. It stands here in full, since a flight, a collision and open boundaries come between the steps of chapter
+// 7's: cut into pieces that both share, neither loop could be read from top to bottom.
+#ifndef FEATURE_MEDIA
+#include "07_multiple_importance_sampling/extend_path.glsl"
+#else
+#include "flights.glsl"
+#include "medium.glsl"
+#include "equiangular.glsl"
+#include "scatter.glsl"
 
 // What a path carries from bounce to bounce: as in chapter 7, and the medium that it is in.
 struct Path {
@@ -7,7 +15,7 @@ struct Path {
     vec3 throughput;
     uint path_length;
     float radiance_scale;
-    bool is_light_sampled;
+    Receiver receiver;
     float bounce_density;
     uint medium;     // index of the one around the ray's origin
     float distance;  // from x_{k-1} to the ray's origin, through open boundaries
@@ -18,7 +26,7 @@ struct Path {
 
 // A path that begins with this camera ray, in the medium around the camera.
 Path start_path(Ray ray) {
-    return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, false, 0.0, find_medium(ray), 0.0, Segment(ray, 0.0, 0u), 0.0);
+    return Path(ray, vec3(0.0), vec3(1.0), 0u, 1.0, NO_RECEIVER, 0.0, find_medium(ray), 0.0, Segment(ray, 0.0, 0u), 0.0);
 }
 
 // Adds light that the path finds, or will have found after some more bounces.
@@ -41,7 +49,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     if (has_angles && path.path_length < parameters.max_path_length) add_light(path, 1u, sample_segment(segment, seed));
 
     if (!is_hit && !is_collision) {
-        float light_density = path.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
+        float light_density = path.receiver.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
         float bounce_part = get_bounce_part(light_density, path.bounce_density);
         add_light(path, 0u, bounce_part * get_background_radiance(path.ray.direction));
         return false;
@@ -62,7 +70,9 @@ bool extend_path(inout Path path, inout uvec2 seed) {
         }
         path.throughput *= s.transmittance;
         float cos_light = dot(s.geometric_normal, s.out_direction);
-        float light_density = path.is_light_sampled ? to_solid_angle(s.light_density, path.distance, cos_light) : 0.0;
+        float light_density = 0.0;
+        if (path.receiver.is_light_sampled)
+            light_density = to_solid_angle(get_light_density(path.receiver, s), path.distance, cos_light);
         if (DISTANCE_SAMPLING == SAMPLES_ANGLES && path.segment.t_max > 0.0)
             light_density *= get_distance_ratio(get_angles(path.segment, s.position), get_medium(path.segment.medium).extinction,
                                                 path.flight);
@@ -72,8 +82,8 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     if (path.path_length == parameters.max_path_length) return false;
 
     // The direct light at x_k, at a surface or in the medium.
-    path.is_light_sampled = STRATEGY != STRATEGY_BOUNCES && !s.is_dielectric;
-    if (path.is_light_sampled) add_light(path, 1u, sample_scattered_light(s, sides, seed));
+    path.receiver = get_receiver(s);
+    if (path.receiver.is_light_sampled) add_light(path, 1u, sample_scattered_light(s, sides, seed));
 
     // Sample ω_k.
     BsdfSample bounce = sample_scattering(s, get_medium(sides.here), seed);
@@ -103,3 +113,4 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     }
     return path.radiance;
 }
+#endif

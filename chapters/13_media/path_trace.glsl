@@ -4,17 +4,6 @@
 // so that it cancels. What a flight does not reach it does not see. A collision scatters like a surface, but by a phase function,
 // which has no normal and no cosine; its weight is the albedo. Light samples work there as in chapter 7, dimmed by Beer's law.
 // A bounce in a medium counts like one at a surface.
-#include "02_cosine_sampling/sample_hemisphere.glsl"
-#include "06_dielectrics/dielectric.glsl"
-#include "11_microfacets/sample_bsdf.glsl"
-#include "07_multiple_importance_sampling/weights.glsl"
-#include "08_light_probes/light_probe_sampling.glsl"
-#ifndef FEATURE_MEDIA
-#include "07_multiple_importance_sampling/extend_path.glsl"
-#else
-#include "flights.glsl"
-#include "medium.glsl"
-#include "equiangular.glsl"
-#include "scatter.glsl"
-#include "extend_path.glsl"
-#endif
+//
+// The loop is the one in extend_path.glsl of this folder. Where a scene has no media, it is still that of chapter 7.
+#include "08_light_probes/path_trace.glsl"

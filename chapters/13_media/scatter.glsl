@@ -42,10 +42,8 @@ vec3 scatter_lamp(ShadingData s, Sides sides, LightTriangle light, LightPoint y,
                          get_ray_to_point(s, y.position_in_front), 1.0, seed);
 }
 
-// A point y on a lamp, and the emissive triangle that it lies on.
-LightPoint sample_lamp(out LightTriangle light, inout uvec2 seed) {
-    vec2 u;
-    light = choose_light_triangle(seed, u);
+// A uniform point y on the emissive triangle of a lamp.
+LightPoint get_lamp_point(LightTriangle light, vec2 u) {
     return get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
 }
 
@@ -66,17 +64,18 @@ vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
                              get_ray_from_surface(s, omega), NO_LIMIT, seed);
     }
     if (samples_angles(get_medium(sides.here)) && is_in_medium(s)) return vec3(0.0);
-    LightTriangle light;
-    LightPoint y = sample_lamp(light, seed);
-    return scatter_lamp(s, sides, light, y, 1.0, seed);
+    vec2 u;
+    LightTriangle light = choose_light(s, seed, u);
+    return scatter_lamp(s, sides, light, get_lamp_point(light, u), 1.0, seed);
 }
 
 // Estimates the light of lamps that is scattered once along a segment.
 vec3 sample_segment(Segment segment, inout uvec2 seed) {
     float extinction = get_medium(segment.medium).extinction;
     if (extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
-    LightTriangle light;
-    LightPoint y = sample_lamp(light, seed);
+    vec2 u;
+    LightTriangle light = choose_light_triangle(seed, u);
+    LightPoint y = get_lamp_point(light, u);
     Angles angles = get_angles(segment, y.position);
     float t = sample_distance(angles, segment.t_max, get_random_numbers(seed).x);
     ShadingData s = get_medium_point(segment.ray.origin + t * segment.ray.direction, segment.ray.direction);

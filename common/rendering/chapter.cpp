@@ -70,6 +70,17 @@ std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::st
     return choices;
 }
 
+// The chapter must come earlier, so that no two continue each other.
+std::string read_continued(const JsonObject& chapter, const std::string& name) {
+    const std::string continued = chapter.text("continues").value_or("");
+    if (continued.empty()) return continued;
+    const auto names = chapter_folders();
+    if (continued >= name || std::ranges::find(names, continued) == names.end())
+        chapter.fail("continues", "is " + in_quotes(continued) + ": name the folder of an earlier chapter");
+    load_chapter(continued);  // whose own may be wrong
+    return continued;
+}
+
 }  // namespace
 
 std::string ChapterChoice::define() const {
@@ -90,10 +101,10 @@ std::vector<std::string> chapter_folders() {
 Chapter load_chapter(const std::string& name) {
     const auto file = project_folder() / "chapters" / name / "chapter.json";
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
-    const JsonObject root(
-        content, file.string(), "the chapter",
-        {"title", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length", "dielectrics", "microfacets",
-         "lens", "media", "light_tree", "low_discrepancy", "options", "choices", "check", "exercise", "tests", "measure"});
+    const JsonObject root(content, file.string(), "the chapter",
+                          {"title", "continues", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length",
+                           "dielectrics", "microfacets", "lens", "media", "light_tree", "low_discrepancy", "options", "choices",
+                           "check", "exercise", "tests", "measure"});
     // The last four are for others: tools/check/grading.py, tools/course/handout.py, tests/support/chapters.cpp,
     // tools/report/studies.py.
     if (root.has("check"))
@@ -101,6 +112,7 @@ Chapter load_chapter(const std::string& name) {
     const Chapter defaults;
     return {.name = name,
             .title = root.required("title", root.text("title")),
+            .continues = read_continued(root, name),
             .default_scene = root.text("default_scene").value_or(defaults.default_scene),
             .strategies = read_strategies(root),
             .light_probe_sampling = root.boolean("light_probe_sampling").value_or(false),

@@ -37,6 +37,7 @@ struct ChapterChoice {
 struct Chapter {
     std::string name;                           // of its folder
     std::string title;                          // shown by --help
+    std::string continues = {};                 // the chapter where files are looked up that this one lacks, see tracer.h
     std::string default_scene = "cornell_box";  // in assets/scenes
     std::vector<Strategy> strategies = {};      // of --strategy, the default first; if none, only bounces find light
     bool light_probe_sampling = false;          // light samples also go to a light probe

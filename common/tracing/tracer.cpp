@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "error.h"
 #include "files/file.h"
@@ -33,8 +32,7 @@ std::map<std::filesystem::path, std::filesystem::path> files_of(std::initializer
     return files;
 }
 
-}  // namespace
-
+// The files that a chapter may replace by its own of the same name, which tools and pages in a browser know from this list, too.
 const std::vector<std::filesystem::path>& replaceable_files() {
     static const std::vector<std::filesystem::path> files = [] {
         const auto list = project_folder() / "shaders/replaceable.json";
@@ -44,29 +42,45 @@ const std::vector<std::filesystem::path>& replaceable_files() {
     return files;
 }
 
+// The folder of an estimator's chapter, that of the chapter which this one continues, and so on.
+std::vector<std::filesystem::path> chapter_folders(const Estimator& estimator) {
+    std::vector folders{(estimator.observed.empty() ? estimator.file : estimator.observed).parent_path()};
+    for (;;) {
+        const auto description = folders.back() / "chapter.json";
+        if (!std::filesystem::exists(description)) return folders;
+        const auto continued = parse_json(description.string(), read_file(description, 1 << 16)).value("continues", "");
+        if (continued.empty()) return folders;
+        folders.push_back(project_folder() / "chapters" / continued);
+    }
+}
+
+}  // namespace
+
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator) {
-    const auto own_or_default = [&](const std::filesystem::path& folder, const std::filesystem::path& file) {
-        const auto own = folder / file.filename();
-        const bool is_there =
-            std::filesystem::exists(own) || estimator.replacements.contains(std::filesystem::weakly_canonical(own));
-        return is_there ? own : project_folder() / "shaders" / file;
-    };
-    const bool is_observed = !estimator.observed.empty();
-    const auto chapter = (is_observed ? estimator.observed : estimator.file).parent_path();
     std::map<std::string, std::filesystem::path> names{{"path_trace.glsl", estimator.file}};
-    for (const auto& file : replaceable_files()) names[file.filename().string()] = own_or_default(chapter, file);
-    if (is_observed) {
+    const auto is_replaced = [&](const auto& place) {
+        return estimator.replacements.contains(std::filesystem::weakly_canonical(place));
+    };
+    const auto add = [&](const std::string& name, const std::filesystem::path& file, std::vector<std::filesystem::path> places) {
+        for (auto& folder : places) folder /= file.filename();
+        places.push_back(project_folder() / "shaders" / file);
+        const auto is_there = [](const auto& place) { return std::filesystem::exists(place); };
+        if (std::ranges::none_of(places, is_there)) return;  // a later chapter is the first that has it
+        names[name] = *std::ranges::find_if(places, [&](const auto& place) { return is_there(place) || is_replaced(place); });
+    };
+    for (const auto& file : replaceable_files()) add(file.filename().string(), file, chapter_folders(estimator));
+    if (!estimator.observed.empty()) {
         names["observed.glsl"] = estimator.observed;
-        names["observed_sample_loop.glsl"] =
-            std::exchange(names["sample_loop.glsl"], own_or_default(estimator.file.parent_path(), "engine/sample_loop.glsl"));
+        names["observed_sample_loop.glsl"] = names["sample_loop.glsl"];
+        add("sample_loop.glsl", "engine/sample_loop.glsl", {estimator.file.parent_path()});
     }
     return names;
 }
 
 std::set<std::filesystem::path> replaceable_places(const Estimator& estimator) {
     std::set<std::filesystem::path> places;
-    for (const auto& file : replaceable_files())
-        places.insert(std::filesystem::weakly_canonical(estimator.file.parent_path() / file.filename()));
+    for (const auto& [name, file] : named_includes(estimator))
+        places.insert(std::filesystem::weakly_canonical(estimator.file.parent_path() / name));
     const auto chapters = std::filesystem::weakly_canonical(project_folder() / "chapters");
     for (const auto& [place, file] : files_of({"engine/render_samples.glsl"}, estimator))
         if (*place.lexically_relative(chapters).begin() != "..") places.insert(place);

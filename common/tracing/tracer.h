@@ -27,11 +27,9 @@ struct Estimator {
     uint32_t max_threads_per_pixel = UINT32_MAX;
 };
 
-// The files of shaders/ that a chapter's folder may replace by its own of the same name: shaders/replaceable.json, which pages in
-// a browser follow, too.
-const std::vector<std::filesystem::path>& replaceable_files();
-
-// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own, and so may be those that can be replaced.
+// Files for #include in shaders that run an estimator: "path_trace.glsl" is its own. Those that shaders/replaceable.json lists
+// are looked up in its chapter's folder, then in that of the chapter which this one continues, and so on, and at last in
+// shaders/.
 std::map<std::string, std::filesystem::path> named_includes(const Estimator& estimator);
 
 // The places of the shaders that --shader can replace: those of chapters/ that a chapter's estimator includes, and what its

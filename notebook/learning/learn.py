@@ -19,6 +19,7 @@ from check.experiments import experiments_of, pictures, together
 from check.names import ratios_of
 from check.submission import Submission, replaced
 from course.mistakes import catalogue, own_shader
+from includes import shaders_of
 from project import CHAPTERS, Parser, add_device_options, number, read_json, write_json
 from report.batch import Batch, run_all
 from report.sources import code
@@ -52,7 +53,7 @@ def experiment_digest(chapter, name):
 
 def own_text(chapter):
     """The code of all of a chapter's own shaders."""
-    return code("".join(shader.read_text(encoding="utf-8") for shader in project.shaders_of(chapter)))
+    return code("".join(shader.read_text(encoding="utf-8") for shader in shaders_of(chapter)))
 
 
 def digest(*parts):

@@ -7,7 +7,8 @@ import json
 import re
 from datetime import datetime
 
-from project import CHAPTERS, commit, rendered_description, shaders_of
+from includes import shaders_of
+from project import CHAPTERS, commit, rendered_description
 from report.sources import digest, files_of
 
 # What determines a picture and how long it takes; window, messages and image formats do not.

@@ -6,12 +6,13 @@ from pathlib import Path
 from unittest import mock
 
 from program import PROJECT  # first: it finds the tools
+import includes
 from docs import rooms
 
 FILES = {
     "common/README.md": "| `tools/upper/` | |\n| `common/lower/` | |\n| `chapters/` | |\n",
     "common/lower/room.h": "", "tools/upper/program.cpp": '#include "lower/room.h"\n',
-    "chapters/01_a/path_trace.glsl": "", "chapters/02_b/path_trace.glsl": '#include "../01_a/path_trace.glsl"\n',
+    "shaders/replaceable.json": "[]", "chapters/01_a/path_trace.glsl": "", "chapters/02_b/path_trace.glsl": '#include "../01_a/path_trace.glsl"\n',
 }
 
 
@@ -23,7 +24,7 @@ class RoomsTest(unittest.TestCase):
             for file, text in {**FILES, **changed}.items():
                 (folder / file).parent.mkdir(parents=True, exist_ok=True)
                 (folder / file).write_text(text, encoding="utf-8")
-            with mock.patch.object(rooms, "ROOT", folder):
+            with mock.patch.object(rooms, "ROOT", folder), mock.patch.object(includes, "ROOT", folder):
                 return look()
 
     def test_nothing_includes_a_room_above_its_own(self):

@@ -8,6 +8,7 @@ from pathlib import Path
 from unittest import mock
 
 from tools_path import PROJECT  # first: it finds the others
+import includes
 from docs import shader_table
 from project import UserError
 
@@ -51,11 +52,11 @@ class ShaderPageTest(unittest.TestCase):
 
     def test_follows_the_comments_and_misses_none(self):
         with tempfile.TemporaryDirectory() as name:
-            root = Path(name)
+            root = Path(name).resolve()
             for folder in ("shaders", "chapters"):
                 shutil.copytree(PROJECT / folder, root / folder)
             frame, call = root / "shaders/world/frame.glsl", root / "chapters/01_uniform_sampling/path_trace.glsl"
-            with mock.patch.object(shader_table, "ROOT", root):
+            with mock.patch.object(shader_table, "ROOT", root), mock.patch.object(includes, "ROOT", root):
                 self.assertIn(shader_table.shader_tables(), PAGE)
                 frame.write_text(frame.read_text(encoding="utf-8").replace("// Rotation matrix Q", "// Turning matrix Q"), encoding="utf-8")
                 self.assertIn("Turning matrix Q", shader_table.shader_tables())

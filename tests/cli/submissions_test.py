@@ -87,7 +87,7 @@ class GradedTogether(Submissions, ProgramTest):
     def test_a_shader_that_a_chapter_includes_from_another_is_known_by_name_or_functions(self):
         """The others in its folder belong to that chapter. Chapter 13 has a file of the same name in its own folder, with one function more."""
         for chapter, place in ((10, (7, "extend_path.glsl")), (8, (2, "sample_hemisphere.glsl")), (12, (10, "sample_loop.glsl")),
-                               (12, (11, "brdf.glsl")), (14, (13, "scatter.glsl")), (13, (13, "extend_path.glsl"))):
+                               (12, (11, "brdf.glsl")), (14, (13, "scatter.glsl")), (13, (13, "extend_path.glsl")), (14, (7, "weights.glsl"))):
             original, alone = chapter_folder(place[0]) / place[1], Path(f"alone_as_{chapter}_{place[1]}")
             copy = self.copy_chapter(place[0], f"{place[0]}_as_{chapter}")
             text = original.read_text(encoding="utf-8")

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "files/project_folder.h"
 #include "hard_cases/probe.h"
 #include "scene/media.h"
 #include "support/gpu_test.h"
@@ -86,6 +87,7 @@ TEST_F(BodiesOnAllBackends, PathsKnowTheirMedium) {
         const GpuScene gpu_scene(test_device(), scene, Strategy::both, true, true, true);
         const auto scene_backend = build_scene_backend(backend, test_device(), gpu_scene);
         Estimator estimator = probe("path_medium");
+        estimator.observed = project_folder() / "chapters/13_media/path_trace.glsl";
         estimator.defines = {"SECOND_MESH " + std::to_string(scene.meshes[1].first_triangle) + "u"};
         Renderer renderer(test_device(), *scene_backend, estimator, make_parameters(scene, settings(backend)));
         while (renderer.advance(8)) {

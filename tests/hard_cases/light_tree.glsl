@@ -21,7 +21,7 @@ Receiver get_random_receiver(inout uvec2 seed) {
         low = min(low, centre - root.radius[i]);
         high = max(high, centre + root.radius[i]);
     }
-    Receiver x = Receiver(0.5 * (low + high), vec3(0.0));
+    Receiver x = Receiver(true, 0.5 * (low + high), vec3(0.0));
     vec3 offset = 0.5 * (high - low) * (2.0 * vec3(u, v.x) - 1.0);
     if (v.y < 0.25) {
         LightTriangle light = light_triangles[uint(w.x * float(light_triangles.length()))];
@@ -35,14 +35,14 @@ Receiver get_random_receiver(inout uvec2 seed) {
 }
 
 vec3 path_trace(Ray ray, inout uvec2 seed) {
-    receiver = get_random_receiver(seed);
+    Receiver receiver = get_random_receiver(seed);
     uint count = uint(light_triangles.length()), lost = 0u;
     float sum = 0.0, left = 0.0;
     for (uint first = 0u; first < count; first += 64u) {
         float part = 0.0;  // so that rounding errors of the sum stay small
         for (uint i = first; i < min(first + 64u, count); ++i) {
             LightTriangle light = light_triangles[i];
-            float probability = get_tree_probability(get_trail(light));
+            float probability = get_tree_probability(receiver, get_trail(light));
             part += probability;
             if (is_on_the_left(light, receiver)) left += probability;
 
@@ -59,10 +59,10 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     float frequency = 0.0;
     for (uint i = 0u; i < DRAWS; ++i) {
         vec2 u;
-        LightTriangle light = choose_light_by_tree(seed, u);
+        LightTriangle light = choose_light_by_tree(receiver, seed, u);
         if (is_on_the_left(light, receiver)) frequency += 1.0 / float(DRAWS);
         LightLeaf leaf = light_leaves[get_light_place(light.instance, light.triangle)];
-        float density = get_tree_probability(leaf.trail) / leaf.area;
+        float density = get_tree_probability(receiver, leaf.trail) / leaf.area;
         if (!(abs(density * light.inverse_density - 1.0) < 1e-5)) ++lost;
     }
     return vec3(!(abs(sum - 1.0) < 1e-6), lost, 1.0 + frequency - left);

@@ -1,7 +1,7 @@
 // Follows the paths of chapter 13, and compares the medium of each with what the solid angles of all bodies say in the middle of its
 // rays: how many differ, and of how many.
 #define path_trace unused_path_trace
-#include "13_media/path_trace.glsl"
+#include "observed.glsl"
 #undef path_trace
 
 // The smallest body around a point. The triangles of the second instance's mesh start at SECOND_MESH.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "files/project_folder.h"
 #include "rendering/settings.h"
 #include "support/course_chapters.h"
 #include "test_files.h"
@@ -52,6 +53,23 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
     }
 }
 
+TEST(Chapter, GetsWhatItLacksFromTheOneThatItContinues) {
+    int own = 0, others = 0;
+    for (const auto& name : course_chapters()) {
+        const Chapter chapter = load_chapter(name);
+        if (chapter.continues.empty()) continue;
+        const auto files = named_includes(estimator_of(chapter));
+        for (const auto& [include, file] : named_includes(estimator_of(load_chapter(chapter.continues)))) {
+            const auto place = project_folder() / "chapters" / name / include;
+            const bool is_own = std::filesystem::exists(place);
+            EXPECT_EQ(files.at(include), is_own ? place : file) << name;
+            ++(is_own ? own : others);
+        }
+    }
+    EXPECT_GT(own, 0);
+    EXPECT_GT(others, 0);
+}
+
 TEST(Chapter, MistakesAreNamed) {
     const TestFolder folder;
     const auto load = [&] { load_chapter(folder.path().string()); };
@@ -64,6 +82,7 @@ TEST(Chapter, MistakesAreNamed) {
         {"{\"title\": \"A\", \"tilte\": \"B\"}", "unknown key \"tilte\""},
         {"{\"title\": \"A\", \"dielectrics\": 1}", "must be true or false"},
         {"{\"title\": \"A\", \"check\": {\"scenes\": []}}", "unknown key \"scenes\" in \"check\""},
+        {"{\"title\": \"A\", \"continues\": \"00_nothing\"}", "is \"00_nothing\": name the folder of an earlier chapter"},
         {"{\"title\": \"A\", \"strategies\": [\"brdf\"]}", "has \"brdf\": use both, light, bounces"},
         {"{\"title\": \"A\", \"options\": \"--survival-cap\"}", "must be a list"},
         {"{\"title\": \"A\", \"options\": [7]}", "has 7: use"},

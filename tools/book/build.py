@@ -10,6 +10,7 @@ from pathlib import Path
 
 from book import live, search
 from book.pages import Page, source_page
+from lesson import show
 from project import CHAPTERS, ROOT, Parser, UserError, course, read_json, run_program, show_progress
 
 HERE = Path(__file__).parent
@@ -50,6 +51,13 @@ def write(folder, path, text):
     (folder / path).write_text(text, encoding="utf-8")
 
 
+def whole_estimator(path):
+    """What a chapter's page shows if it is unfolded; nothing for other pages."""
+    number = next((number for number, name in CHAPTERS.items() if path == Path(f"chapters/{name}/README.md")), None)
+    return "" if number is None else ('\n<details markdown="1">\n<summary>The whole path tracer of this chapter</summary>\n\n'
+                                      f"```glsl\n{show.listing(number)}```\n\n</details>\n")
+
+
 def collect(folder, sections, is_teacher):
     """Writes the pages, the files they link to, their pictures, and what their live frames need, at the paths they have in the project. Returns the pages,
     the names of the sources on the site, and what is to be found by name: {address: (name, explanation)}."""
@@ -66,7 +74,7 @@ def collect(folder, sections, is_teacher):
             write(folder, f"{path}.md", source_page(path))
             continue
         page = Page(path, is_included)
-        write(folder, path, page.text)
+        write(folder, path, page.text + whole_estimator(path))
         waiting += page.linked
         frames |= page.frames
         named |= {f"{path.with_suffix('.html')}#{name}": (name, text) for name, text in page.functions.items()}

@@ -34,6 +34,7 @@ LARGEST = 2_500_000  # bytes of a scene on a page
 HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
 SHADERS = {".glsl", ".h", ".frag"}
 REPLACEABLE = "shaders/replaceable.json"  # the files that a chapter may replace
+CONTINUED = "chapters/continued.json"  # {chapter: that which it continues}: written for pages
 IN_DRAWS = {"sample_loop.glsl": "single_sample.glsl", "stuck_loop.glsl": "stuck_loop_of_a_draw.glsl"}  # what a page has in place of the programs'
 
 
@@ -72,6 +73,7 @@ def shaders():
              if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)}
     for name, replacement in IN_DRAWS.items():
         texts[f"shaders/engine/{name}"] = texts.pop(f"shaders/engine/{replacement}")
+    texts[CONTINUED] = literal({chapter: description(chapter).get("continues") for chapter in CHAPTERS.values()})
     return {name: text if name.startswith("chapters/") else re.sub("[ \t]*//.*", "", text) for name, text in texts.items()}
 
 

@@ -7,7 +7,8 @@ from functools import cached_property
 from pathlib import Path
 
 from check.expected import DESCRIPTIONS, expected_file
-from project import CHAPTERS, ROOT, UserError, description, printable, read_json, shaders_of, text_of
+from includes import named_files, shaders_of
+from project import CHAPTERS, ROOT, UserError, description, printable, text_of
 from report.measurement import relative
 
 
@@ -58,8 +59,8 @@ class Submission:
         return shader
 
     def shader_named(self, file):
-        """The chapter's shader with the name of one of the files, or None. Some only include one with the same name of another chapter: then
-        the one whose functions the file has."""
+        """The chapter's shader with the name of one of the files, or None. Where it extends one with the same name of another
+        chapter: the one whose functions the file has."""
         return with_most_functions_of(file, [shader for shader in shaders_of(self.chapter) if shader.name == file.name])[1]
 
     @cached_property
@@ -68,8 +69,8 @@ class Submission:
         own = {self.shader_named(other) or self.estimator.with_name(other.name): other for other in self.files[:-1]}
         places = own | {self.shader: self.file}
         # What the chapter neither has nor may bring is included by these files only, and found beside them.
-        replaceable = {Path(name).name for name in read_json(ROOT / "shaders/replaceable.json")}
-        return [word for place, source in places.items() if place.exists() or place.name in replaceable
+        named = named_files(self.estimator.parent)
+        return [word for place, source in places.items() if place.exists() or place.name in named
                 for word in replacement(place, source)]
 
     def first_todo(self):

@@ -8,7 +8,8 @@ A mistake that leaves the picture right has instead a "question", and under "san
 from dataclasses import dataclass
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, course, original, read_json, shaders_of, text_of
+from includes import shaders_of
+from project import CHAPTERS, ROOT, UserError, course, original, read_json, text_of
 
 NO_QUESTION = "Where do the two pictures differ, and which line decides that?"
 SAID_ONCE = ("explanation", "hint", "slide", "test")

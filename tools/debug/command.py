@@ -13,6 +13,7 @@ import os
 import shutil
 import sys
 
+from includes import named_files
 from project import CHAPTERS, ROOT, Parser, UserError, number, program_file
 
 SETTINGS = ["set breakpoint pending on", "set print thread-events off", "set debuginfod enabled off",
@@ -39,7 +40,8 @@ def partition(words, separator):
 
 def first_function(chapter):
     """Where to stop: a chapter with a loop over samples of its own never calls path_trace(), but extends paths by itself."""
-    return "extend_path" if (ROOT / "chapters" / chapter / "sample_loop.glsl").is_file() else "path_trace"
+    chapters = ROOT / "chapters"
+    return "extend_path" if named_files(chapters / chapter)["sample_loop.glsl"].is_relative_to(chapters) else "path_trace"
 
 
 def command_for(debugger, program, arguments, extra, function="path_trace"):

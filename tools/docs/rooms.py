@@ -6,11 +6,11 @@ the two annexes. The notebook includes rooms, and nothing outside includes the n
 import re
 from html import escape
 
+from includes import INCLUDE, includes, named_files
 from project import ROOT, Parser, write_bytes
 
 DIAGRAM = ROOT / "docs/diagrams/rooms.svg"
 TABLE_ROW = re.compile(r"^\| `([\w/]+)/` \|", re.MULTILINE)
-INCLUDE = re.compile(r'^ *#include "([^"]+)"', re.MULTILINE)
 IMPORT = re.compile(r"^ *(?:from|import) (\w+)", re.MULTILINE)
 SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 WIDTH, CELL, LEFT = 640, 16, 190  # in pixels; names are left of the cells
@@ -30,20 +30,14 @@ def files_of(rooms):
 
 
 def included_files(path):
-    """The files that a source includes, at every place they may be."""
-    text = path.read_text(encoding="utf-8")
+    """The files that a source includes or imports."""
     if path.suffix == ".py":
-        return [ROOT / "tools" / name for name in IMPORT.findall(text)]
-    found = []
-    for name in INCLUDE.findall(text):
-        places = [path.parent / name, *(ROOT / folder / name for folder in ("common", "shaders", "chapters", "."))]
-        # A chapter's files, and files in other rooms of shaders/, are included by name only.
-        places += [place for folder in ("shaders", "chapters") for place in sorted((ROOT / folder).glob(f"*/{name}"))]
-        found += [place.resolve() for place in places if place.is_file()][:1]
-    return found
+        return [ROOT / "tools" / name for name in IMPORT.findall(path.read_text(encoding="utf-8"))]
+    first = next((ROOT / "chapters").iterdir())  # any chapter, where the programs decide which one
+    return includes(path, named_files(path.parent if path.is_relative_to(first.parent) else first))
 
 
-def includes():
+def uses():
     """(room, other room) -> one source of the room and what it includes from the other."""
     rooms = read_rooms()
     found = {}
@@ -58,7 +52,7 @@ def includes():
 def upward():
     """Sources that include a room above their own, and chapters that include a later one."""
     rooms = read_rooms()
-    wrong = [text for (room, other), text in includes().items() if rooms.index(room) > rooms.index(other)]
+    wrong = [text for (room, other), text in uses().items() if rooms.index(room) > rooms.index(other)]
     for path in sorted((ROOT / "chapters").glob("*/*.glsl")):
         wrong += [f"{path.relative_to(ROOT)} includes {target.relative_to(ROOT)}" for target in included_files(path)
                   if target.is_relative_to(ROOT / "chapters") and target.parent.name > path.parent.name]
@@ -67,7 +61,7 @@ def upward():
 
 def into_the_annexes():
     """Sources outside common/app that include the window or the native backend, which the course does without."""
-    return [text for (room, other), text in includes().items() if other in ANNEXES and room != "common/app"]
+    return [text for (room, other), text in uses().items() if other in ANNEXES and room != "common/app"]
 
 
 def into_the_notebook():
@@ -89,7 +83,7 @@ def into_the_notebook():
 
 def picture():
     """SVG: a dot in row i and column j where room i includes room j. Dots left of the diagonal go upwards."""
-    rooms, found, shapes, top = read_rooms(), includes(), [], 20
+    rooms, found, shapes, top = read_rooms(), uses(), [], 20
 
     def text(x, y, words, colour, anchor):
         shapes.append(f'<text x="{x}" y="{y}" font-size="12" fill="{colour}" text-anchor="{anchor}">{escape(words)}</text>')

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
+from includes import shaders_of
 from project import CHAPTERS, ROOT, UserError, course, table
 
 INTERFACE = "shaders/interface.h"
@@ -100,11 +101,10 @@ def section(heading, paths, rows):
 
 
 def shared_between(shaders):
-    """{source: the lines for it} of the chapters' files that other chapters include."""
-    text = "".join(read(file) for files in shaders.values() for file in files)
-    paths = {file.relative_to(ROOT).as_posix(): number for number, files in shaders.items() for file in files}
-    included = {path: number for path, number in paths.items() if f'#include "{path.removeprefix("chapters/")}"' in text}
-    return {path: [row(item, number, path) for item in declared(path) if item.name != "path_trace"] for path, number in included.items()}
+    """{source: the lines for it} of the chapters' files that other chapters get or include."""
+    taken = {file for number, files in shaders.items() for file in shaders_of(number) if file not in files}
+    paths = {file.relative_to(ROOT).as_posix(): number for number, files in shaders.items() for file in files if file in taken}
+    return {path: [row(item, number, path) for item in declared(path) if item.name != "path_trace"] for path, number in paths.items()}
 
 
 def shader_tables():

@@ -8,6 +8,7 @@ import sys
 from collections import Counter
 from difflib import SequenceMatcher
 
+from includes import included, named_files
 from project import CHAPTERS, ROOT, Parser, original, text_of
 
 CONTEXT = 3  # unchanged lines around a change
@@ -15,36 +16,29 @@ CONTEXT = 3  # unchanged lines around a change
 BEFORE = {number: previous if original(number) == number else original(number) for previous, number in zip(CHAPTERS, list(CHAPTERS)[1:])}
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
-INCLUDE = re.compile(r'#include "(?:\.\./)?([\w/]+\.glsl)"')
 ESTIMATOR = re.compile(r"^vec3 path_trace\(", re.MULTILINE)
 
 
-def shader_text(file):
-    """The text of a shader, given by its path below chapters/; empty if the file does not exist."""
-    path = ROOT / "chapters" / file
-    return text_of(path) if path.is_file() else ""
-
-
-def shader_lines(file):
-    """The lines of a shader below chapters/. If it includes its namesake from another chapter, or a file with the function
-    path_trace(), the included lines follow, so that chapters are compared as if each were written in full."""
-    (folder, name), lines = file.split("/"), []
-    for line in shader_text(file).splitlines():
+def shader_lines(file, named=None):
+    """The lines of a shader, given by its path below the project's folder; none if there is no such file. If it includes its namesake, or
+    a file with the function path_trace(), the included lines follow, so that chapters are compared as if each were written in full."""
+    path, lines = (ROOT / file).resolve(), []
+    named = named or named_files(path.parent)
+    for line in text_of(path).splitlines() if path.is_file() else []:
         lines.append(line)
-        target = INCLUDE.match(line)[1] if INCLUDE.match(line) else ""
-        target = target if "/" in target else f"{folder}/{target}"
-        if target != file and (target.endswith(f"/{name}") or ESTIMATOR.search(shader_text(target))):
-            lines += shader_lines(target)
+        target = included(line, path, named)
+        if target and target != path and (target.name == path.name or ESTIMATOR.search(text_of(target))):
+            lines += shader_lines(target, named)
     return lines
 
 
 def lesson(number):
-    """(file before, file) below chapters/ for each shader of a chapter's folder, the estimator first."""
-    folder, names = CHAPTERS[number], ["path_trace.glsl"]
-    for path in sorted((ROOT / "chapters" / folder).glob("*.glsl")):
-        if path.name not in names and not ESTIMATOR.search(shader_text(f"{folder}/{path.name}")):  # otherwise it is part of the first
-            names.append(path.name)
-    return [(f"{CHAPTERS[BEFORE[number]]}/{name}", f"{folder}/{name}") for name in names]
+    """(file before, file) for each shader of a chapter's folder, the estimator first."""
+    folder, before = (ROOT / "chapters" / CHAPTERS[each] for each in (number, BEFORE[number]))
+    # A file with that function is part of the estimator.
+    names = ["path_trace.glsl", *(path.name for path in sorted(folder.glob("*.glsl")) if not ESTIMATOR.search(text_of(path)))]
+    named = named_files(before)
+    return [[path.relative_to(ROOT).as_posix() for path in (named.get(name, before / name), folder / name)] for name in dict.fromkeys(names)]
 
 
 def words_of(lines):
@@ -107,7 +101,7 @@ def show(names, rows):
     """Prints rows of compare() under the names of the two files."""
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     rule = "." * min(shutil.get_terminal_size().columns, 120)
-    print("\n".join(paint(mark, f"chapters/{name}", None, colour) for mark, name in zip("-+", names) if shader_text(name)))
+    print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names) if shader_lines(name)))
     for row in visible(rows):
         print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
 

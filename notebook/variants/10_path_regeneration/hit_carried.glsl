@@ -3,6 +3,7 @@
 #include "02_cosine_sampling/sample_hemisphere.glsl"
 #include "06_dielectrics/dielectric.glsl"
 #include "07_multiple_importance_sampling/sample_bsdf.glsl"
+#include "choose_light.glsl"
 #include "07_multiple_importance_sampling/weights.glsl"
 #include "08_light_probes/light_probe_sampling.glsl"
 

@@ -14,6 +14,7 @@ float get_lobe(ShadingData s, vec3 in_direction) {
     return exp(-2.0 * s.specular_exponent * z * (1.0 + z * z * (1.0 / 3.0 + z * z / 5.0)));
 }
 
+// The lobe's part of the BRDF, per steradian and colour channel.
 vec3 get_phong_brdf(ShadingData s, vec3 in_direction) {
     return s.specular_albedo * ((s.specular_exponent + 2.0) / (2.0 * PI) * get_lobe(s, in_direction));
 }

@@ -26,18 +26,17 @@ live.Editor = (() => {
         try { return localStorage.getItem(keyOf(path)); } catch { return null; }
     }
 
-    // The files that a chapter is made of: that of its lesson, its estimator, and what these include from chapters/.
+    // The files that a chapter is made of: that of its lesson, its estimator, its others, and what it gets or includes from other chapters.
     function filesOf(chapter) {
         const estimator = `chapters/${chapter}/path_trace.glsl`;
         const files = [...new Set([live.chapters[chapter].exercise?.file ?? estimator, estimator])];
-        const own = Object.keys(live.sources).filter(path => path.startsWith(`chapters/${chapter}/`) && !files.includes(path));
-        files.push(...own.sort());
+        const add = path => { if (path?.startsWith("chapters/") && !files.includes(path)) files.push(path); };
+        Object.keys(live.sources).filter(path => path.startsWith(`chapters/${chapter}/`)).sort().forEach(add);
+        const find = live.glsl.finder(live.sources, chapter);
+        for (const path of JSON.parse(live.sources["shaders/replaceable.json"])) add(find(path.replace(/.*\//, ""), path));
         for (const file of files)
-            for (const [, name] of live.sources[file].matchAll(/^#include "([^"]*)"/gm)) {
-                const path = [file.replace(/[^/]*$/, ""), "chapters/"].map(folder => folder + name).find(p => p in live.sources);
-                if (path && !files.includes(path)) files.push(path);
-            }
-        return files.filter(file => !/^#include "[^"]*"\s*$/.test(live.sources[file]));  // not those that only name another
+            for (const [, name] of live.sources[file].matchAll(/^#include "([^"]*)"/gm)) add(find(name, file));
+        return files;
     }
 
     return class Editor {

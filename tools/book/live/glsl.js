@@ -361,7 +361,7 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
         const { text, places } = written(translation.result);
         const head = "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp usampler2D;\n" + PRELUDE;
         const headLines = head.split("\n").length - 1;
-        const hasSampleLoop = preprocessor.files.has(`chapters/${chapter}/sample_loop.glsl`);
+        const hasSampleLoop = [...preprocessor.files].some(file => /^chapters\/.*\/sample_loop.glsl$/.test(file));
         const { functions, loops } = translation;
         return { text: head + text, place: line => places[line - headLines - 1], loop: number => loops[number - 1], functions, hasSampleLoop };
     }
@@ -377,17 +377,21 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
         return `${at(place(Number(line)))}${text.trim()}${hint ? ` (${hint})` : ""}`;
     }
 
-    // Where a shader's #include finds a file, as the programs do: the files of this list may be a chapter's own.
+    // Where a shader's #include finds a file, as the programs do: those that chapters may replace in the chapter's folder, or in that of the
+    // chapter which this one continues, and so on, or in shaders/.
     function finder(sources, chapter, named = {}) {
-        const own = `chapters/${chapter}/`, files = new Map([["path_trace.glsl", `${own}path_trace.glsl`]]);
+        const files = new Map([["path_trace.glsl", `chapters/${chapter}/path_trace.glsl`]]), folders = [];
+        const continued = JSON.parse(sources["chapters/continued.json"]);
+        for (let each = chapter; each; each = continued[each]) folders.push(`chapters/${each}/`);
         for (const path of JSON.parse(sources["shaders/replaceable.json"])) {
             const name = path.replace(/.*\//, "");
-            files.set(name, own + name in sources ? own + name : `shaders/${path}`);
+            const place = [...folders.map(folder => folder + name), `shaders/${path}`].find(place => place in sources);
+            if (place) files.set(name, place);
         }
         for (const [name, path] of Object.entries(named)) files.set(name, path);
         return (name, includer) => files.get(name) ?? [includer.replace(/[^/]*$/, ""), "shaders/", "chapters/"]
             .map(folder => new URL(folder + name, "file:///").pathname.slice(1)).find(path => path in sources);
     }
 
-    return { translate, readableError, ShaderError };
+    return { translate, finder, readableError, ShaderError };
 })();

@@ -7,7 +7,7 @@ Path new_path(Ray camera_ray) {
     p.throughput = vec3(1.0);
     p.path_length = 0u;
     p.radiance_scale = 1.0;
-    p.is_light_sampled = STRATEGY != STRATEGY_BOUNCES;
+    p.receiver.is_light_sampled = STRATEGY != STRATEGY_BOUNCES;
     p.bounce_density = 1.0;  // the camera ray has no choice
     return p;
 }

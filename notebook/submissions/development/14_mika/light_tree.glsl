@@ -1,28 +1,4 @@
-// Three ways to choose an emissive triangle: by the tree, by its power as in earlier chapters, and all alike.
-const uint CHOOSES_BY_TREE = 0u;
-const uint CHOOSES_BY_POWER = 1u;
-const uint CHOOSES_UNIFORMLY = 2u;
-#ifndef LIGHT_CHOICE
-#define LIGHT_CHOICE CHOOSES_BY_TREE
-#endif
-
-// The point x_k at which light arrives, as the tree sees it.
-struct Receiver {
-    vec3 position;
-    vec3 normal;  // light arrives from its side only, or from everywhere if it is 0
-};
-
-// Of the latest light sample. The bounce that follows weighs what it finds by the density that this sample would have had.
-Receiver receiver = Receiver(vec3(0.0), vec3(0.0));
-
-void set_receiver(ShadingData s) {
-    receiver = Receiver(s.position, s.normal);
-#ifdef FEATURE_MICROFACETS
-    if (s.is_rough_dielectric) receiver.normal = vec3(0.0);
-#endif
-}
-
-#ifdef FEATURE_LIGHT_TREE
+// The light tree: the importance of its nodes, the way down to a triangle, and how likely that is.
 
 // The least squared distance that counts, as a multiple of a node's squared radius. Measured: smaller ones make clusters around a
 // point too likely, larger ones those on their other side too unlikely.
@@ -77,7 +53,7 @@ bool is_first_chosen(vec2 probabilities, inout uvec2 digits) {
 // Descends the tree: one number decides at all nodes, and what is left of it is the first of the two numbers for a point. At each
 // node it chooses one half of the children, and then one of these two. 1 minus the probability of the first would round to
 // 0 for a dim second one.
-LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
+LightTriangle choose_light_by_tree(Receiver receiver, inout uvec2 seed, out vec2 u) {
     uvec2 words = get_random_words(seed), digits = words;
     u = to_numbers(words);
     advance_random_state(digits);
@@ -107,8 +83,8 @@ LightTriangle choose_light_by_tree(inout uvec2 seed, out vec2 u) {
     return light;
 }
 
-// The probability of a leaf: its trail says which children lead there.
-float get_tree_probability(uint trail) {
+// The probability with which the receiver's light sample chooses a leaf. Its trail says which children lead there.
+float get_tree_probability(Receiver receiver, uint trail) {
     float probability = 1.0;
     for (uint child = 0u; child < IS_LIGHT_LEAF; trail >>= 2u) {
         LightNode node = light_nodes[child];
@@ -118,51 +94,4 @@ float get_tree_probability(uint trail) {
         child = node.child[trail & 3u];
     }
     return probability;
-}
-
-// Each triangle has the same probability.
-LightTriangle choose_light_uniformly(inout uvec2 seed, out vec2 u) {
-    uint count = uint(light_triangles.length());
-    uvec2 words = get_random_words(seed);
-    u = to_numbers(words);
-    uint digits;
-    LightTriangle light = light_triangles[get_random_index(count, words, digits)];
-    u.x = to_numbers(uvec2(digits)).x;
-    light.inverse_density = light_leaves[get_light_place(light.instance, light.triangle)].area * float(count);
-    return light;
-}
-
-// Half of the light samples go to the light probe, if there is one.
-const float TRIANGLE_PROBABILITY = HAS_LIGHT_PROBE_CELLS ? 1.0 - LIGHT_PROBE_PROBABILITY : 1.0;
-
-// Chooses a triangle, and two numbers in [0,1) for a point on it.
-LightTriangle choose_light(inout uvec2 seed, out vec2 u) {
-    if (LIGHT_CHOICE == CHOOSES_BY_POWER) return choose_light_triangle(seed, u);
-    LightTriangle light;
-    if (LIGHT_CHOICE == CHOOSES_UNIFORMLY)
-        light = choose_light_uniformly(seed, u);
-    else
-        light = choose_light_by_tree(seed, u);
-    light.inverse_density /= TRIANGLE_PROBABILITY;
-    return light;
-}
-
-// p_A: the density with respect to area that the light sample before had at the emissive triangle that a bounce has hit.
-float get_light_density(ShadingData s) {
-    if (LIGHT_CHOICE == CHOOSES_BY_POWER) return s.light_density;
-    LightLeaf leaf = light_leaves[s.light];
-    bool is_uniform = LIGHT_CHOICE == CHOOSES_UNIFORMLY;
-    float probability = is_uniform ? 1.0 / float(light_triangles.length()) : get_tree_probability(leaf.trail);
-    return TRIANGLE_PROBABILITY * probability / leaf.area;
-}
-#else
-LightTriangle choose_light(inout uvec2 seed, out vec2 u) { return choose_light_triangle(seed, u); }
-float get_light_density(ShadingData s) { return s.light_density; }
-#endif
-
-// The shading data where a bounce hits, with the density of the light sample before.
-ShadingData get_weighed_shading_data(Hit hit, vec3 ray_direction) {
-    ShadingData s = get_shading_data(hit, ray_direction);
-    if (s.light_density > 0.0) s.light_density = get_light_density(s);
-    return s;
 }

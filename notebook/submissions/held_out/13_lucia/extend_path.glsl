@@ -1,4 +1,11 @@
 // The path loop in media.
+#ifndef FEATURE_MEDIA
+#include "07_multiple_importance_sampling/extend_path.glsl"
+#else
+#include "flights.glsl"
+#include "medium.glsl"
+#include "equiangular.glsl"
+#include "scatter.glsl"
 
 // What a path carries from bounce to bounce: as in chapter 7, and the medium that it is in.
 struct Path {
@@ -106,3 +113,4 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
     }
     return path.radiance;
 }
+#endif

@@ -1,1 +1,0 @@
-#include "10_path_regeneration/sample_loop.glsl"

@@ -1,1 +1,0 @@
-#include "11_microfacets/brdf.glsl"

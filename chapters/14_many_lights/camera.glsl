@@ -1,1 +1,0 @@
-#include "12_lens/camera.glsl"
