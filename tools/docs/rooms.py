@@ -33,7 +33,7 @@ def included_files(path):
     """The files that a source includes or imports."""
     if path.suffix == ".py":
         return [ROOT / "tools" / name for name in IMPORT.findall(path.read_text(encoding="utf-8"))]
-    first = next((ROOT / "chapters").iterdir())  # any chapter, where the programs decide which one
+    first = min((ROOT / "chapters").iterdir())  # any chapter, where the programs decide which one
     return includes(path, named_files(path.parent if path.is_relative_to(first.parent) else first))
 
 
