@@ -19,9 +19,9 @@ def continued(folder):
 
 def named_files(folder):
     """{name: file} of the estimator in a chapter's folder and of the files that chapters may replace: its own, or those that it gets instead."""
-    named = {"path_trace.glsl": folder / "path_trace.glsl"}
+    named, folders = {"path_trace.glsl": folder / "path_trace.glsl"}, list(continued(folder))
     for file in map(Path, read_json(ROOT / "shaders/replaceable.json")):
-        places = [*(other / file.name for other in continued(folder)), ROOT / "shaders" / file]
+        places = [*(other / file.name for other in folders), ROOT / "shaders" / file]
         named |= {file.name: place for place in [next(filter(Path.exists, places), None)] if place}
     return named
 

@@ -202,25 +202,21 @@ struct Builtins {
         }
     }
     template <typename A, typename B>
+    static constexpr auto add_from_last(const A& a, const B& b) {
+        auto sum = a[A::length() - 1] * b[A::length() - 1];
+        for (length_t i = A::length() - 1; i-- > 0;) sum = a[i] * b[i] + sum;
+        return sum;
+    }
+    template <typename A, typename B>
     static constexpr auto multiply(const A& a, const B& b) {
-        constexpr bool has_factors = !std::is_arithmetic_v<A> && !std::is_arithmetic_v<B>;
-        if constexpr (has_factors && is_matrix<A> && is_matrix<B>) {
+        if constexpr (std::is_arithmetic_v<A> || std::is_arithmetic_v<B> || (!is_matrix<A> && !is_matrix<B>)) {
+            return a * b;
+        } else if constexpr (is_matrix<B>) {
             decltype(a * b) result;
-            for (length_t i = 0; i < B::length(); ++i) result[i] = multiply(a, b[i]);
-            return result;
-        } else if constexpr (has_factors && is_matrix<A>) {
-            auto sum = a[A::length() - 1] * b[A::length() - 1];
-            for (length_t i = A::length() - 1; i-- > 0;) sum = a[i] * b[i] + sum;
-            return sum;
-        } else if constexpr (has_factors && is_matrix<B>) {
-            decltype(a * b) result;
-            for (length_t i = 0; i < B::length(); ++i) {
-                result[i] = a[A::length() - 1] * b[i][A::length() - 1];
-                for (length_t j = A::length() - 1; j-- > 0;) result[i] = a[j] * b[i][j] + result[i];
-            }
+            for (length_t i = 0; i < B::length(); ++i) result[i] = add_from_last(a, b[i]);
             return result;
         } else {
-            return a * b;
+            return add_from_last(a, b);
         }
     }
     template <typename T>

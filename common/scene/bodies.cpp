@@ -172,11 +172,7 @@ std::optional<dvec3> crossing(const dvec3& p, const dvec3& q, const std::array<d
     const double from = glm::dot(p - a, normal), to = glm::dot(q - a, normal);
     if (!(std::min(from, to) < -tolerance && std::max(from, to) > tolerance)) return std::nullopt;
     const dvec3 point = p + from / (from - to) * (q - p);
-    const auto is_inside = [&](const dvec3& corner, const dvec3& next) {
-        const dvec3 edge = next - corner;
-        return glm::dot(normal, glm::cross(edge, point - corner)) > -tolerance * glm::length(edge);
-    };
-    return is_inside(a, b) && is_inside(b, c) && is_inside(c, a) ? std::optional(point) : std::nullopt;
+    return is_over(triangle, point, tolerance) ? std::optional(point) : std::nullopt;
 }
 
 std::vector<Bounds> boxes_of(const Scene& scene, const Body& body) {
@@ -188,7 +184,66 @@ std::vector<Bounds> boxes_of(const Scene& scene, const Body& body) {
     return boxes;
 }
 
+// Whether the surface of one body runs through that of another. Where they meet only at corners or edges, it does not.
+bool cross_each_other(const Scene& scene, const Body& a, const Body& b) {
+    const Bounds space{glm::max(a.bounds.low, b.bounds.low), glm::min(a.bounds.high, b.bounds.high)};
+    // Below the distance by which contacts.h separates what touches, and above the rounding errors of positions.
+    const dvec3 largest = glm::max(glm::abs(dvec3(space.low)), glm::abs(dvec3(space.high)));
+    const double tolerance = start_distance(largest);
+    bool is_found = false;
+    const auto search = [&](const std::array<dvec3, 3>& edges, const std::array<dvec3, 3>& triangle, const Body& of_triangle) {
+        for (size_t k = 0; k < 3 && !is_found; ++k) {
+            const dvec3 &p = edges[k], &q = edges[(k + 1) % 3];
+            const auto point = crossing(p, q, triangle, tolerance);
+            if (!point) continue;
+            const dvec3 step = 2 * tolerance * glm::normalize(q - p);
+            is_found = encloses(scene, of_triangle, *point - step) != encloses(scene, of_triangle, *point + step);
+        }
+    };
+    for_each_overlap(boxes_of(scene, a), boxes_of(scene, b), space, [&](uint32_t i, uint32_t j) {
+        if (is_found) return;
+        const auto x = world_corners(scene, a, a.triangles[i]), y = world_corners(scene, b, b.triangles[j]);
+        search(x, y, b);
+        search(y, x, a);
+    });
+    return is_found;
+}
+
+// Gives a body new corners, whose order and normals are turned around.
+void turn_around(Scene& scene, std::vector<Body>& bodies, Body& body) {
+    const uint32_t moved = make_own_mesh(scene, body.instance);
+    for (Body& other : bodies)
+        if (other.instance == body.instance)
+            for (uint32_t& triangle : other.triangles) triangle += moved;
+    for (const uint32_t triangle : body.triangles) {
+        const uvec3 corners = scene.triangles[triangle];
+        for (int i = 0; i < 3; ++i) {
+            const uint32_t vertex = scene.triangles[triangle][i] = copy_vertex(scene, corners[i == 0 ? 0 : 3 - i]);
+            if (!scene.normals.empty()) scene.normals[vertex] = -scene.normals[vertex];
+        }
+    }
+    body.volume = -body.volume;
+}
+
 const std::string& file_of(const Scene& scene, const Body& body) { return scene.mesh_of(body.instance).file; }
+
+// Light fades in absorbing glass up to the glass's own surface only.
+void note_absorption(const Scene& scene, const std::vector<Body>& bodies, std::vector<std::string>& warnings) {
+    for (const Body& body : bodies) {
+        const auto absorbs = [&](uint32_t other) {
+            return !bodies[other].is_open && scene.material_of(bodies[other].triangles[0]).absorption != vec3(0);
+        };
+        const auto found = std::ranges::find_if(body.overlaps, absorbs);
+        const bool is_inside = body.outside && absorbs(*body.outside) && !body.is_cavity &&
+                               std::abs(body.volume) < 0.999 * bodies[*body.outside].volume;  // it may fill all of the glass
+        if (!is_inside && found == body.overlaps.end()) continue;
+        const Body& glass = bodies[is_inside ? *body.outside : *found];
+        warnings.push_back(file_of(scene, body) + ": lies in the absorbing glass of " + file_of(scene, glass) +
+                           ": Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its "
+                           "way from there to here; give that glass a \"medium\" in place of Tf");
+        return;
+    }
+}
 
 }  // namespace
 
@@ -205,6 +260,15 @@ std::vector<Body> find_bodies(const Scene& scene) {
     std::ranges::stable_sort(
         bodies, {}, [](const Body& body) { return std::pair(-std::abs(static_cast<float>(body.volume)), body.is_open); });
     return bodies;
+}
+
+bool is_over(const std::array<dvec3, 3>& triangle, const dvec3& point, double tolerance) {
+    const dvec3 normal = glm::normalize(glm::cross(triangle[1] - triangle[0], triangle[2] - triangle[0]));
+    for (size_t i = 0; i < 3; ++i) {
+        const dvec3 edge = triangle[(i + 1) % 3] - triangle[i];
+        if (!(glm::dot(normal, glm::cross(edge, point - triangle[i])) >= -tolerance * glm::length(edge))) return false;
+    }
+    return true;
 }
 
 bool encloses(const Scene& scene, const Body& body, const dvec3& point) {
@@ -241,26 +305,6 @@ uint32_t copy_vertex(Scene& scene, uint32_t vertex) {
     return static_cast<uint32_t>(scene.positions.size() - 1);
 }
 
-namespace {
-
-// Gives a body new corners, whose order and normals are turned around.
-void turn_around(Scene& scene, std::vector<Body>& bodies, Body& body) {
-    const uint32_t moved = make_own_mesh(scene, body.instance);
-    for (Body& other : bodies)
-        if (other.instance == body.instance)
-            for (uint32_t& triangle : other.triangles) triangle += moved;
-    for (const uint32_t triangle : body.triangles) {
-        const uvec3 corners = scene.triangles[triangle];
-        for (int i = 0; i < 3; ++i) {
-            const uint32_t vertex = scene.triangles[triangle][i] = copy_vertex(scene, corners[i == 0 ? 0 : 3 - i]);
-            if (!scene.normals.empty()) scene.normals[vertex] = -scene.normals[vertex];
-        }
-    }
-    body.volume = -body.volume;
-}
-
-}  // namespace
-
 void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies, const std::vector<bool>& has_medium) {
     for (Body& body : bodies) {  // the largest first
         if (body.is_open || body.open_edges > 0) continue;
@@ -287,35 +331,6 @@ void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies, const std::v
     }
 }
 
-namespace {
-
-// Whether the surface of one body runs through that of another. Where they meet only at corners or edges, it does not.
-bool cross_each_other(const Scene& scene, const Body& a, const Body& b) {
-    const Bounds space{glm::max(a.bounds.low, b.bounds.low), glm::min(a.bounds.high, b.bounds.high)};
-    // Below the distance by which contacts.h separates what touches, and above the rounding errors of positions.
-    const dvec3 largest = glm::max(glm::abs(dvec3(space.low)), glm::abs(dvec3(space.high)));
-    const double tolerance = 8 * 0x1p-24 * (largest.x + largest.y + largest.z);
-    bool is_found = false;
-    const auto search = [&](const std::array<dvec3, 3>& edges, const std::array<dvec3, 3>& triangle, const Body& of_triangle) {
-        for (size_t k = 0; k < 3 && !is_found; ++k) {
-            const dvec3 &p = edges[k], &q = edges[(k + 1) % 3];
-            const auto point = crossing(p, q, triangle, tolerance);
-            if (!point) continue;
-            const dvec3 step = 2 * tolerance * glm::normalize(q - p);
-            is_found = encloses(scene, of_triangle, *point - step) != encloses(scene, of_triangle, *point + step);
-        }
-    };
-    for_each_overlap(boxes_of(scene, a), boxes_of(scene, b), space, [&](uint32_t i, uint32_t j) {
-        if (is_found) return;
-        const auto x = world_corners(scene, a, a.triangles[i]), y = world_corners(scene, b, b.triangles[j]);
-        search(x, y, b);
-        search(y, x, a);
-    });
-    return is_found;
-}
-
-}  // namespace
-
 void nest_bodies(const Scene& scene, std::vector<Body>& bodies) {
     for (uint32_t i = 0; i < bodies.size(); ++i) {
         const dvec3 point = point_on(scene, bodies[i]);
@@ -330,28 +345,6 @@ void nest_bodies(const Scene& scene, std::vector<Body>& bodies) {
         }
     }
 }
-
-namespace {
-
-// Light fades in absorbing glass up to the glass's own surface only.
-void note_absorption(const Scene& scene, const std::vector<Body>& bodies, std::vector<std::string>& warnings) {
-    for (const Body& body : bodies) {
-        const auto absorbs = [&](uint32_t other) {
-            return !bodies[other].is_open && scene.material_of(bodies[other].triangles[0]).absorption != vec3(0);
-        };
-        const auto found = std::ranges::find_if(body.overlaps, absorbs);
-        const bool is_inside = body.outside && absorbs(*body.outside) && !body.is_cavity &&
-                               std::abs(body.volume) < 0.999 * bodies[*body.outside].volume;  // it may fill all of the glass
-        if (!is_inside && found == body.overlaps.end()) continue;
-        const Body& glass = bodies[is_inside ? *body.outside : *found];
-        warnings.push_back(file_of(scene, body) + ": lies in the absorbing glass of " + file_of(scene, glass) +
-                           ": Tf acts only where a ray arrives at the glass's surface from within, so light does not fade on its "
-                           "way from there to here; give that glass a \"medium\" in place of Tf");
-        return;
-    }
-}
-
-}  // namespace
 
 std::vector<std::string> body_warnings(const Scene& scene, const std::vector<Body>& bodies) {
     std::vector<std::string> warnings;

@@ -5,6 +5,7 @@
 // the file, and where two overlap, there is the smaller one. Of two with the same volume the open one counts as the smaller, or
 // else the later one.
 #pragma once
+#include <array>
 #include <optional>
 
 #include "scene/scene.h"
@@ -36,6 +37,9 @@ void turn_inside_out_glass(Scene& scene, std::vector<Body>& bodies, const std::v
 
 // Finds out what is inside of what. Bodies that only touch must have been separated before, see contacts.h.
 void nest_bodies(const Scene& scene, std::vector<Body>& bodies);
+
+// Whether a point lies on a triangle, above or below it, or so close beside that.
+bool is_over(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& point, double tolerance);
 
 // Whether a body is around a point.
 bool encloses(const Scene& scene, const Body& body, const glm::dvec3& point);

@@ -30,7 +30,7 @@ double error_bound(const dvec3& magnitude, const dvec3& edge_1, const dvec3& edg
     const auto largest = [](const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
     const double size = std::max(largest(edge_1), largest(edge_2));
     const double slenderness = 1 / std::max(largest(glm::cross(edge_1 / size, edge_2 / size)), 1.0 / 256);
-    return 8 * 0x1p-24 * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
+    return start_distance(magnitude) * slenderness;
 }
 
 Face make_face(const Scene& scene, uint32_t instance, uint32_t triangle) {
@@ -50,7 +50,7 @@ Face make_face(const Scene& scene, uint32_t instance, uint32_t triangle) {
     face.normal = glm::normalize(normal);
     face.offset = std::max(error_bound(own_magnitude, edge_1, edge_2) / glm::length(normal),
                            error_bound(magnitude, linear * edge_1, linear * edge_2));
-    face.rounding = 8 * 0x1p-24 * (magnitude.x + magnitude.y + magnitude.z);
+    face.rounding = start_distance(magnitude);
     return face;
 }
 
@@ -84,14 +84,7 @@ bool touch(const Face& a, const Face& b) {
 bool touch_at_a_corner(const Face& a, const Face& b) {
     const double tolerance = 2 * std::max(a.rounding, b.rounding);
     const auto is_on = [&](const Face& face, const dvec3& corner) {
-        const auto& c = face.corners;
-        const dvec3 normal = glm::normalize(glm::cross(c[1] - c[0], c[2] - c[0]));
-        if (std::abs(glm::dot(corner - c[0], normal)) > tolerance) return false;
-        for (size_t i = 0; i < 3; ++i) {
-            const dvec3 edge = c[(i + 1) % 3] - c[i];
-            if (glm::dot(normal, glm::cross(edge, corner - c[i])) < -tolerance * glm::length(edge)) return false;
-        }
-        return true;
+        return std::abs(glm::dot(corner - face.corners[0], face.normal)) <= tolerance && is_over(face.corners, corner, tolerance);
     };
     return std::ranges::any_of(b.corners, [&](const dvec3& corner) { return is_on(a, corner); }) ||
            std::ranges::any_of(a.corners, [&](const dvec3& corner) { return is_on(b, corner); });

@@ -78,6 +78,8 @@ Bounds world_bounds(const Scene& scene) {
     return world;
 }
 
+double start_distance(const glm::dvec3& magnitude) { return 8 * 0x1p-24 * (magnitude.x + magnitude.y + magnitude.z); }
+
 glm::dvec3 world_corner(const Scene& scene, uint32_t instance, uint32_t triangle, int i) {
     return glm::dmat4x3(scene.instances[instance].object_to_world) * glm::dvec4(scene.corner(triangle, i), 1);
 }

@@ -112,6 +112,10 @@ Bounds world_bounds(const Scene& scene);
 
 // A corner of a triangle of an instance, and the triangle's area, in world space.
 glm::dvec3 world_corner(const Scene& scene, uint32_t instance, uint32_t triangle, int i);
+
+// The distance off a triangle at which rays start, unless it is slender: get_error_bound() in shaders/world/shading_data.glsl.
+// The magnitude is that of its coordinates.
+double start_distance(const glm::dvec3& magnitude);
 double world_area(const Scene& scene, uint32_t instance, uint32_t triangle);
 
 // Reads a .json scene or a bare .obj. `specular` enables Phong lobes, like the key in the scene. The default camera is

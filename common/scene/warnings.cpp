@@ -132,9 +132,7 @@ std::vector<std::string> precision_warnings(const Scene& scene) {
     if (!scene.instances.empty()) {
         const Bounds bounds = world_bounds(scene);
         const glm::dvec3 low(bounds.low), high(bounds.high), farthest = glm::max(glm::abs(low), glm::abs(high));
-        // The offset of get_surface_point() in shaders/world/shading_data.glsl for a triangle that is not slender.
-        const double offset = 8 * rounding * (farthest.x + farthest.y + farthest.z);
-        const double part = offset / glm::distance(low, high);
+        const double part = start_distance(farthest) / glm::distance(low, high);
         if (part > 1e-3)
             warnings.push_back(name + ": it is so far from the origin that 32-bit coordinates blur " + to_text(100 * part) +
                                " % of its size; move it closer");

@@ -43,7 +43,7 @@ const std::vector<std::filesystem::path>& replaceable_files() {
 }
 
 // The folder of an estimator's chapter, that of the chapter which this one continues, and so on.
-std::vector<std::filesystem::path> chapter_folders(const Estimator& estimator) {
+std::vector<std::filesystem::path> continued_folders(const Estimator& estimator) {
     std::vector folders{(estimator.observed.empty() ? estimator.file : estimator.observed).parent_path()};
     for (;;) {
         const auto description = folders.back() / "chapter.json";
@@ -68,7 +68,8 @@ std::map<std::string, std::filesystem::path> named_includes(const Estimator& est
         if (std::ranges::none_of(places, is_there)) return;  // a later chapter is the first that has it
         names[name] = *std::ranges::find_if(places, [&](const auto& place) { return is_there(place) || is_replaced(place); });
     };
-    for (const auto& file : replaceable_files()) add(file.filename().string(), file, chapter_folders(estimator));
+    const auto folders = continued_folders(estimator);
+    for (const auto& file : replaceable_files()) add(file.filename().string(), file, folders);
     if (!estimator.observed.empty()) {
         names["observed.glsl"] = estimator.observed;
         names["observed_sample_loop.glsl"] = names["sample_loop.glsl"];

@@ -101,7 +101,7 @@ def show(names, rows):
     """Prints rows of compare() under the names of the two files."""
     colour = sys.stdout.isatty() and "NO_COLOR" not in os.environ
     rule = "." * min(shutil.get_terminal_size().columns, 120)
-    print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names) if shader_lines(name)))
+    print("\n".join(paint(mark, name, None, colour) for mark, name in zip("-+", names) if (ROOT / name).is_file()))
     for row in visible(rows):
         print(paint(*row, colour) if row else paint("@", rule, None, True) if colour else "@")
 
