@@ -1,5 +1,6 @@
 """Long renders: they stop when told to, lose nothing, and continue where they stopped."""
 
+import json
 import math
 import random
 import re
