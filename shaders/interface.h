@@ -55,9 +55,6 @@ SHARED_CONSTANT BINDING_LIGHT_LEAVES = 28u;
 SHARED_CONSTANT BINDING_LIGHT_PLACES = 29u;
 SHARED_CONSTANT BINDING_BOUNDARY_PLACES = 30u;
 SHARED_CONSTANT BINDING_OVERLAPS = 31u;
-// Of the backend `native` alone. Macros leave the shaders of the others as they are.
-#define BINDING_WORLD_TRIANGLES 32u
-#define BINDING_FIRST_WORLD_TRIANGLES 33u
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -133,14 +130,6 @@ struct Boundary {
 struct Instance {
     mat4x3 object_to_world;  // columns: images of the axes, then the translation
     mat3 normal_to_world;    // inverse transpose of the linear part: keeps the front side, mirrored or not
-};
-
-// A triangle of an instance as rays meet it, 64 bytes. What get_surface_point() needs to compute but once.
-struct WorldTriangle {
-    mat3 corners;  // columns: positions
-    vec3 normal;   // geometric, unit length, on the front
-    vec3 offsets;  // at the corners, as SurfacePoint has it
-    uint padding;
 };
 
 // An emissive triangle in the alias table of all of them, see common/scene/light_table.h.

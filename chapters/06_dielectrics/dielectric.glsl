@@ -29,5 +29,5 @@ BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
     }
     // A direction on different sides of the shading and the geometric normal carries no light.
     vec3 weight = vec3(is_reflected == (dot(s.geometric_normal, omega) > 0.0));
-    return BsdfSample(omega, weight, 0.0, true, is_reflected ? 1.0 : 1.0 / (eta * eta));
+    return BsdfSample(omega, weight, 0.0, is_reflected ? 1.0 : 1.0 / (eta * eta));
 }

@@ -4,5 +4,5 @@ BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
     if (s.is_dielectric) return sample_dielectric(s, seed);
     vec3 omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
     vec3 weight = is_above_surface(s, omega) ? PI * get_brdf(s, omega) : vec3(0.0);
-    return BsdfSample(omega, weight, dot(s.normal, omega) / PI, false, 1.0);
+    return BsdfSample(omega, weight, dot(s.normal, omega) / PI, 1.0);
 }

@@ -7,9 +7,5 @@ vec3 get_brdf(ShadingData s, vec3 in_direction) {
     if (s.is_rough_dielectric) return vec3(get_rough_dielectric_bsdf(s, in_direction));
     if (s.roughness > 0.0) return get_opaque_brdf(s, in_direction);
 #endif
-#ifdef FEATURE_SPECULAR
-    return s.diffuse_albedo / PI + get_phong_brdf(s, in_direction);
-#else
-    return s.diffuse_albedo / PI;
-#endif
+    return get_lobes_brdf(s, in_direction);
 }

@@ -1,5 +1,6 @@
 // Bounces that follow microfacets: sample the normal of a facet, then reflect or refract at it. Elsewhere they are those of
 // chapter 7.
+#include "07_multiple_importance_sampling/sample_lobes.glsl"
 #include "sample_normal.glsl"
 #ifdef FEATURE_MICROFACETS
 
@@ -57,9 +58,9 @@ BsdfSample sample_microfacets(ShadingData s, inout uvec2 seed) {
     // Some facets send light to the wrong side of the surface, where it meets others. The model leaves it out.
     float cos_i = dot(s.normal, omega), density = get_microfacet_density(s, omega);
     if (!is_above_surface(s, omega) || (cos_i < 0.0) != is_refracted || !(density > 0.0))
-        return BsdfSample(omega, vec3(0.0), 0.0, false, 1.0);
+        return BsdfSample(omega, vec3(0.0), 0.0, 1.0);
     float radiance_scale = is_refracted ? 1.0 / (s.relative_index * s.relative_index) : 1.0;
-    return BsdfSample(omega, get_brdf(s, omega) * (cos_i / (density * radiance_scale)), density, false, radiance_scale);
+    return BsdfSample(omega, get_brdf(s, omega) * (cos_i / (density * radiance_scale)), density, radiance_scale);
 }
 #endif
 
@@ -68,11 +69,7 @@ float get_bsdf_density(ShadingData s, vec3 in_direction) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return get_microfacet_density(s, in_direction);
 #endif
-    float density = dot(s.normal, in_direction) / PI;
-#ifdef FEATURE_SPECULAR
-    density = mix(density, get_phong_density(s, in_direction), get_phong_probability(s));
-#endif
-    return density;
+    return get_lobes_density(s, in_direction);
 }
 
 // Samples ω_k as the material scatters light, whatever it is.
@@ -81,15 +78,5 @@ BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
     if (s.roughness > 0.0) return sample_microfacets(s, seed);
 #endif
     if (s.is_dielectric) return sample_dielectric(s, seed);
-    bool is_from_lobe = false;
-    vec3 omega;
-#ifdef FEATURE_SPECULAR
-    is_from_lobe = happens(get_phong_probability(s), seed);
-    if (is_from_lobe) omega = sample_phong(s, get_random_numbers(seed));
-#endif
-    if (!is_from_lobe) omega = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
-    // The weight ρ n·ω / p_b = π ρ · (n·ω / π) / p_b: exactly π ρ where p_b is the cosine's density.
-    float density = get_bsdf_density(s, omega);
-    vec3 weight = PI * get_brdf(s, omega) * (dot(s.normal, omega) / PI / density);
-    return BsdfSample(omega, is_above_surface(s, omega) ? weight : vec3(0.0), density, false, 1.0);
+    return sample_lobes(s, seed);
 }

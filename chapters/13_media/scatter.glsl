@@ -15,7 +15,7 @@ float get_scattering_density(ShadingData s, Medium medium, vec3 omega) {
 BsdfSample sample_scattering(ShadingData s, Medium medium, inout uvec2 seed) {
     if (!is_in_medium(s)) return sample_bsdf(s, seed);
     vec3 omega = sample_phase(medium, -s.out_direction, get_random_numbers(seed));
-    return BsdfSample(omega, medium.albedo, get_phase(medium, -s.out_direction, omega), false, 1.0);
+    return BsdfSample(omega, medium.albedo, get_phase(medium, -s.out_direction, omega), 1.0);
 }
 
 // The light that arrives at x_k from one direction, dimmed by the media on its way and scattered along ω_o. A light sample found

@@ -7,7 +7,7 @@
 #include <optional>
 #include <sstream>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "error.h"
 #include "files/file.h"
 #include "gpu/device.h"
@@ -23,14 +23,14 @@ namespace lab {
 namespace {
 
 void print_devices() {
-    const auto devices = list_devices(all_backends);
+    const auto devices = list_devices();
     for (size_t i = 0; i < devices.size(); ++i) {
         const auto& device = devices[i];
         std::printf("%zu  %s (%s, Vulkan %s, %s)\n", i, device.name.c_str(), device.kind.c_str(), device.api_version.c_str(),
                     device.driver.c_str());
         for (const Backend backend : all_backends) {
             std::string missing;
-            for (const auto& name : device.missing.at(backend)) missing += (missing.empty() ? "" : ", ") + name;
+            for (const auto& name : missing_for(backend, device)) missing += (missing.empty() ? "" : ", ") + name;
             std::printf("   %-9s %s\n", backend->name, missing.empty() ? "works" : ("lacks " + missing).c_str());
             if (missing.empty() && backend->details) std::printf("   %s's rays: %s\n", backend->name, backend->details().c_str());
         }
@@ -102,8 +102,7 @@ bool run_in_window(Window& window, const Chapter& chapter, const RenderJob& job)
     const Device device({.choice = options.device,
                          .validation = options.validation,
                          .instance_extensions = window.instance_extensions(),
-                         .make_surface = [&](VkInstance instance) { return window.make_surface(instance); },
-                         .backends = all_backends});
+                         .make_surface = [&](VkInstance instance) { return window.make_surface(instance); }});
     if (*device.surface()) {
         run_viewer(window, device, chapter, job);
         check_validation(device, options);
@@ -121,11 +120,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
     if (ends_at_safety_limit(chapter, *job.scene, job.options))
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
-    if (const auto at_once = build.renderer->tracer().paths_at_once()) {
-        const auto& [count, why_not_more] = *at_once;
-        std::cout << "each core      traces " << count << (count == 1 ? " path" : " paths") << " at a time"
-                  << (why_not_more.empty() ? "" : ": " + why_not_more) << std::endl;
-    }
+    if (const std::string note = build.renderer->tracer().note(); !note.empty()) std::cout << note << std::endl;
 }
 
 // Builds a job without a window. If `auto` chooses a backend that refuses the shader, the others have to run it.
@@ -173,16 +168,16 @@ std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob&
     std::vector<std::string> unused;
     const CameraOptions& camera = job.options.camera;
     const bool has_focus = camera.focus_distance && (!job.options.image.view || job.options.image.view->name != "focus");
-    if (!chapter.lens && has_focus) {
+    if (!chapter.handles.lens && has_focus) {
         unused.push_back("--focus-distance has no effect: " + chapter.name + " has a pinhole; use chapter 12, ./lab run 12");
     } else if (has_focus && camera_of(chapter, *job.scene, job.options).aperture_diameter == 0) {
         unused.push_back("--focus-distance has no effect on a pinhole: give --aperture-diameter, too");
     }
-    if (job.options.scene.specular && !features_of(*job.scene).specular)
+    if (job.options.scene.specular && !features_of(*job.scene).specular())
         unused.push_back("--specular has no effect: no material of " + job.scene->file.string() + " has a Phong lobe (Ks)");
     if (job.options.appearance.exposure != 0 && !has_window && !writes_exposed_picture(job.options))
         unused.push_back("--exposure has no effect: it brightens PNG and JPG pictures of radiance, and no output is one");
-    const bool has_fog = chapter.media && !job.scene->media.empty() && job.scene->media.front().extinction > 0 &&
+    const bool has_fog = chapter.handles.media && !job.scene->media.empty() && job.scene->media.front().extinction > 0 &&
                          job.scene->media.front().grid_size.x == 0;
     if (job.options.light.background && has_fog)
         unused.push_back("--background has no effect: no light gets through the endless fog of " + job.scene->file.string());
@@ -198,10 +193,10 @@ void print_warnings(const Chapter& chapter, const RenderJob& job, bool has_windo
         bool is_left_out;
         const char* what;
         std::string asked_by;
-    } const extras[] = {{features.microfacets && !chapter.microfacets, "microfacets (Pr)", scene},
-                        {features.lens && !chapter.lens, "lens (aperture diameter)", scene},
-                        {asks_for_lens(job.options) && !features.lens && !chapter.lens, "lens", "--aperture-diameter"},
-                        {features.media && !chapter.media, "media (fog, medium)", scene}};
+    } const extras[] = {{features.microfacets && !chapter.handles.microfacets, "microfacets (Pr)", scene},
+                        {features.lens && !chapter.handles.lens, "lens (aperture diameter)", scene},
+                        {asks_for_lens(job.options) && !features.lens && !chapter.handles.lens, "lens", "--aperture-diameter"},
+                        {features.media && !chapter.handles.media, "media (fog, medium)", scene}};
     for (const auto& [is_left_out, what, asked_by] : extras) {
         if (!is_left_out) continue;
         const std::string use = ": use a chapter that can render it, see ./lab run";
@@ -267,7 +262,7 @@ class Commands {
         const RunOptions& now = job.options.run;
         if (!build_ || build_->job.options.run.device != now.device || build_->job.options.run.validation != now.validation) {
             build_.reset();
-            device_.emplace(DeviceOptions{.choice = now.device, .validation = now.validation, .backends = all_backends});
+            device_.emplace(DeviceOptions{.choice = now.device, .validation = now.validation});
         }
         BuildStage first = BuildStage::scene;
         // Views, too, decide which backends are suitable.

@@ -37,6 +37,11 @@ bool contains(const std::vector<vk::ExtensionProperties>& extensions, std::strin
     return std::ranges::any_of(extensions, [&](const auto& extension) { return extension.extensionName.data() == name; });
 }
 
+// Enabled where the device has them.
+constexpr const char* tracing_extensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                              VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+                                              VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, VK_KHR_RAY_QUERY_EXTENSION_NAME};
+
 // Required features; those for ray tracing count only with their extensions.
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                     vk::PhysicalDeviceAccelerationStructureFeaturesKHR,
@@ -66,7 +71,7 @@ size_t usable_memory(const vk::raii::PhysicalDevice& device, bool shares_memory)
     return sum;
 }
 
-DeviceDescription describe(const vk::raii::PhysicalDevice& device, std::span<const Backend> backends) {
+DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties,
                                                   vk::PhysicalDeviceMaintenance3Properties>();
     const auto& general = properties.get<vk::PhysicalDeviceProperties2>().properties;
@@ -83,26 +88,20 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device, std::span<con
         // Offsets of parts are 32-bit.
         .largest_buffer =
             std::min<size_t>(properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize, UINT32_MAX),
-        .missing_everywhere = {},
         .missing = {},
+        .extensions = {},
     };
     if (general.apiVersion < VK_API_VERSION_1_2) {
-        description.missing_everywhere = {"Vulkan 1.2"};
-        for (const Backend backend : backends) description.missing[backend] = description.missing_everywhere;
+        description.missing = {"Vulkan 1.2"};
         return description;
     }
     Features features;
     device.getDispatcher()->vkGetPhysicalDeviceFeatures2(*device, reinterpret_cast<VkPhysicalDeviceFeatures2*>(&features.get()));
-    const auto extensions = device.enumerateDeviceExtensionProperties();
-    description.missing_everywhere = missing_features(device, features);
-    for (const Backend backend : backends) {
-        auto& missing = description.missing[backend] = description.missing_everywhere;
-        for (const char* wanted : backend->extensions)
-            if (!contains(extensions, wanted)) missing.emplace_back(wanted);
-        if (!backend->extensions.empty() && !features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
-            missing.emplace_back("bufferDeviceAddress");
-        if (backend->missing) std::ranges::copy(backend->missing(description), std::back_inserter(missing));
-    }
+    description.missing = missing_features(device, features);
+    for (const auto& extension : device.enumerateDeviceExtensionProperties())
+        description.extensions.insert(extension.extensionName.data());
+    if (!features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress)
+        description.extensions.erase(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
     return description;
 }
 
@@ -167,7 +166,7 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
     if (choice.empty()) {
         for (const char* kind : {"discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"})
             for (size_t i = 0; i < devices.size(); ++i)
-                if (devices[i].kind == kind && devices[i].missing_everywhere.empty()) return i;
+                if (devices[i].kind == kind && devices[i].missing.empty()) return i;
         return 0;
     }
     const bool is_number = choice.size() < 6 && choice.find_first_not_of("0123456789") == std::string::npos;
@@ -191,9 +190,7 @@ size_t choose_device(const std::vector<DeviceDescription>& devices, const std::s
 }  // namespace
 
 Device::Device(const DeviceOptions& options)
-    : backends_(options.backends),
-      context_(load_vulkan()),
-      instance_(create_instance(context_, options.validation, options.instance_extensions)) {
+    : context_(load_vulkan()), instance_(create_instance(context_, options.validation, options.instance_extensions)) {
     if (options.validation) {
         // The C structure: Vulkan-Hpp changed the callback's parameter types between releases.
         VkDebugUtilsMessengerCreateInfoEXT info{};
@@ -207,11 +204,11 @@ Device::Device(const DeviceOptions& options)
     }
     auto devices = enumerate_devices(instance_);
     std::vector<DeviceDescription> descriptions;
-    for (const auto& device : devices) descriptions.push_back(describe(device, backends_));
+    for (const auto& device : devices) descriptions.push_back(describe(device));
     const size_t chosen = choose_device(descriptions, options.choice);
     description_ = descriptions[chosen];
-    if (!description_.missing_everywhere.empty())
-        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing_everywhere.front() +
+    if (!description_.missing.empty())
+        throw DeviceError("device '" + description_.name + "' lacks " + description_.missing.front() +
                           ": choose another with --device (see --list-devices) or update its driver");
     physical_ = std::move(devices[chosen]);
     limits_ = physical_.getProperties().limits;
@@ -224,7 +221,7 @@ Device::Device(const DeviceOptions& options)
 void Device::choose_queue_family() {
     const auto families = physical_.getQueueFamilyProperties();
     if (*surface_) {
-        const bool has_swapchain = contains(physical_.enumerateDeviceExtensionProperties(), VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+        const bool has_swapchain = description_.extensions.contains(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
         for (uint32_t family = 0; has_swapchain && family < families.size(); ++family)
             if (computes(families[family]) && families[family].queueFlags & vk::QueueFlagBits::eGraphics &&
                 physical_.getSurfaceSupportKHR(family, *surface_)) {
@@ -246,12 +243,12 @@ void Device::create_device() {
     auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
     vulkan12.scalarBlockLayout = true;
     vulkan12.shaderSampledImageArrayNonUniformIndexing = true;
-    for (const Backend backend : backends_)
-        if (description_.supports(backend))
-            for (const char* extension : backend->extensions) extensions_.insert(extension);
+    if (description_.extensions.contains(VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME))
+        for (const char* extension : tracing_extensions)
+            if (description_.extensions.contains(extension)) extensions_.insert(extension);
     if (*surface_) extensions_.insert(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     constexpr const char* portability = "VK_KHR_portability_subset";  // must be enabled if a device has it
-    if (contains(physical_.enumerateDeviceExtensionProperties(), portability)) extensions_.insert(portability);
+    if (description_.extensions.contains(portability)) extensions_.insert(portability);
     const auto switch_on = [&]<typename Structure>(vk::Bool32 Structure::*feature, const char* extension) {
         features.get<Structure>().*feature = true;
         if (!has_extension(extension)) features.unlink<Structure>();
@@ -354,11 +351,11 @@ void wait_for_writes(const vk::raii::CommandBuffer& commands) {
         {}, {});
 }
 
-std::vector<DeviceDescription> list_devices(std::span<const Backend> backends) {
+std::vector<DeviceDescription> list_devices() {
     const vk::raii::Context context = load_vulkan();
     const vk::raii::Instance instance = create_instance(context, false);
     std::vector<DeviceDescription> descriptions;
-    for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device, backends));
+    for (const auto& device : enumerate_devices(instance)) descriptions.push_back(describe(device));
     return descriptions;
 }
 

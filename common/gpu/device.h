@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "error.h"
-#include "gpu/backend.h"
 #include "gpu/vulkan.h"
 
 namespace lab {
@@ -21,7 +20,6 @@ struct DeviceOptions {
     // Instance extensions that the window needs; empty without a window.
     std::vector<const char*> instance_extensions = {};
     std::function<VkSurfaceKHR(VkInstance)> make_surface = {};
-    std::span<const Backend> backends = {};  // of the program
 };
 
 // A device as --list-devices shows it.
@@ -30,13 +28,11 @@ struct DeviceDescription {
     std::string kind;    // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
     std::string driver;  // name and version
     std::string api_version;
-    bool shares_memory = false;                           // with the CPU
-    size_t memory = 0;                                    // bytes that shaders can use
-    size_t largest_buffer = 0;                            // bytes of a buffer that is bound part by part
-    std::vector<std::string> missing_everywhere;          // features that every backend needs and the device lacks
-    std::map<Backend, std::vector<std::string>> missing;  // what a backend lacks, the former included
-
-    bool supports(Backend backend) const { return missing.at(backend).empty(); }
+    bool shares_memory = false;                     // with the CPU
+    size_t memory = 0;                              // bytes that shaders can use
+    size_t largest_buffer = 0;                      // bytes of a buffer that is bound part by part
+    std::vector<std::string> missing;               // features that all shaders need and the device lacks
+    std::set<std::string, std::less<>> extensions;  // that the device has, those for tracing rays only where they work
 };
 
 // A compiled pipeline, and the layout that it needs.
@@ -66,7 +62,6 @@ class Device {
     Properties properties() const {
         return physical_.getProperties2<vk::PhysicalDeviceProperties2, Properties>().template get<Properties>();
     }
-    std::span<const Backend> backends() const { return backends_; }
     bool has_extension(const char* name) const { return extensions_.contains(name); }
 
     // For windows. The surface is null if the device cannot present to it.
@@ -98,7 +93,6 @@ class Device {
     void create_device();
     void load_pipeline_cache();
 
-    const std::span<const Backend> backends_;
     Messages messages_;
     vk::raii::Context context_;
     vk::raii::Instance instance_ = nullptr;
@@ -127,7 +121,7 @@ class Device {
 void wait_for_writes(const vk::raii::CommandBuffer& commands);
 
 // All devices in the order of their indices. Throws DeviceError without a Vulkan driver.
-std::vector<DeviceDescription> list_devices(std::span<const Backend> backends);
+std::vector<DeviceDescription> list_devices();
 
 // A shader goes on although it was interrupted. Nothing that it uses can be destroyed any more.
 struct EndlessWork : DeviceFailure {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "native/bindings.h"
-#include "native/packet.h"
+#include "native/lanes/packet.h"
 
 namespace lab::native {
 

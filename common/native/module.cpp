@@ -236,8 +236,8 @@ std::mutex& mutex_of(const std::string& name) {
 void* load_library(const std::string& text, const std::vector<std::string>& arguments, std::string& refusal) {
     std::string key = find_compiler().string() + processor() + text;
     for (const auto& argument : arguments) key += " " + argument;
-    for (const char* header : {"glsl.h", "lanes.h", "lane_statements.h", "lane_builtins.h", "vectors.h", "packet.h", "bindings.h",
-                               "embree.h", "few_triangles.h"})
+    for (const char* header : {"glsl.h", "bindings.h", "embree.h", "lanes/lanes.h", "lanes/statements.h", "lanes/builtins.h",
+                               "lanes/vectors.h", "lanes/packet.h", "lanes/few_triangles.h"})
         key += read_file(header_folder() / "native" / header, UINT64_MAX);
     const std::string name = cache_name("native", key);
     const fs::path file = cache_file(name);
@@ -307,7 +307,7 @@ MakeRayTracer load_embree() {
     if (embree.empty()) return nullptr;
     auto arguments = compiler_arguments();
     arguments.push_back("-l" + embree);
-    const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/few_triangles.h\"\n";
+    const std::string text = "#include <" + embree + "/rtcore.h>\n#include \"native/lanes/few_triangles.h\"\n";
     std::string why_one_by_one;
     void* library = load_library([&](bool) { return text; }, arguments, {"-DLAB_FEW_TRIANGLES"}, why_one_by_one);
     return reinterpret_cast<MakeRayTracer>(dlsym(library, "lab_make_ray_tracer"));

@@ -1,6 +1,6 @@
 #include "native/translator.h"
 
-#include "native/lane_writer.h"
+#include "native/lanes/lane_writer.h"
 
 namespace lab::native {
 

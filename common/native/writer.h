@@ -2,7 +2,7 @@
 // it is used once and at once, is a part of what uses it, so that the C++ resembles the GLSL. Names with two underscores, which
 // GLSL keeps for itself, belong to the translation.
 #pragma once
-#include "native/variance.h"
+#include "native/lanes/variance.h"
 
 namespace lab::native {
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "rendering/render_job.h"
+#include "rendering/backend_choice.h"
 #include "rendering/settings.h"
 
 namespace lab {
@@ -44,10 +44,9 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     require_memory(device, Renderer::memory_needs(wanted.parameters.image_size));
     if (first <= BuildStage::gpu_scene) {
         build.gpu_scene =
-            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.light_probe_sampling,
-                                       chapter.microfacets, chapter.media, chapter.light_tree);
+            std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.handles);
         build.backend = choose_backend(wanted, device, *build.gpu_scene);
-        build.scene_backend = build_scene_backend(build.backend, device, *build.gpu_scene);
+        build.scene_backend = build.backend->build(device, *build.gpu_scene);
     } else {
         build.gpu_scene = before->gpu_scene;
         build.backend = before->backend;

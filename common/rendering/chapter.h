@@ -40,13 +40,8 @@ struct Chapter {
     std::string continues = {};                 // the chapter where files are looked up that this one lacks, see tracer.h
     std::string default_scene = "cornell_box";  // in assets/scenes
     std::vector<Strategy> strategies = {};      // of --strategy, the default first; if none, only bounces find light
-    bool light_probe_sampling = false;          // light samples also go to a light probe
     bool unlimited_path_length = false;         // unless the scene or --max-path-length limits it
-    bool dielectrics = false;                   // whether its estimator handles them
-    bool microfacets = false;                   // likewise for rough metal, plastic and glass (Pr)
-    bool lens = false;                          // has a camera with an aperture
-    bool media = false;                         // light scatters between surfaces, too
-    bool light_tree = false;                    // light samples choose a triangle by a tree over all of them
+    Capabilities handles = {};                  // keys of their own
     bool low_discrepancy = false;               // brings its own points, random_words.glsl, which are not independent
     std::vector<ChapterOption> options = {};
     std::vector<ChapterChoice> choices = {};

@@ -235,6 +235,7 @@ const std::vector<View>& views() {
 std::optional<Options> parse_options(const Chapter& chapter, std::span<const Backend> backends,
                                      const std::vector<std::string>& arguments) {
     Options options;
+    options.run.backends = backends;
     std::string scene = chapter.default_scene, view;
     CLI::App app(chapter.title, chapter.name);
     app.footer("Exit codes: 0 done, 1 bad input or usage, 2 no usable device, 3 device lost or out of memory.");

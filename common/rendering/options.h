@@ -9,6 +9,7 @@
 #include "gpu/shader_compiler.h"
 #include "rendering/chapter.h"
 #include "scene/scene.h"
+#include "tracing/backend.h"
 
 namespace lab {
 
@@ -84,7 +85,8 @@ struct AppearanceOptions {
 
 // Device, outputs and limits of the run.
 struct RunOptions {
-    std::string backend = "auto";
+    std::span<const Backend> backends;  // of the program
+    std::string backend = "auto";       // a name among theirs
     std::string device;
     bool list_devices = false;
     std::vector<std::filesystem::path> outputs;

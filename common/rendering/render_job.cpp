@@ -30,7 +30,7 @@ void check_sample_count(const RenderJob& job) {
 }
 
 void check_scene(const Chapter& chapter, const Scene& scene) {
-    if (features_of(scene).dielectrics && !chapter.dielectrics)
+    if (features_of(scene).dielectrics && !chapter.handles.dielectrics)
         throw UserError(scene.file.string() + ": has a dielectric (d < 1 or Tr > 0), which " + chapter.name +
                         " cannot render: use chapter 6, ./lab run 6");
 }
@@ -44,7 +44,7 @@ uint32_t next_sample_count(uint32_t samples, uint32_t target, double growth) {
 
 std::shared_ptr<const Scene> load_scene_for(const Chapter& chapter, const SceneOptions& options) {
     auto scene = std::make_shared<Scene>(load_scene(options.file, options.specular));
-    if (!chapter.media) leave_out_open_boundaries(*scene);
+    if (!chapter.handles.media) leave_out_open_boundaries(*scene);
     return scene;
 }
 

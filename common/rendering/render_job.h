@@ -35,12 +35,4 @@ RenderJob make_job(const Chapter& chapter, const Options& options, std::shared_p
 // Changes the options of a job with the same scene and estimator. It then no longer continues an earlier run.
 void set_options(RenderJob& job, const Chapter& chapter, const Options& options);
 
-// Whether a backend supports a view.
-bool can_show(const View& view, Backend backend);
-
-// The backend that the job's options ask for. "auto" measures which one is fastest on this scene and caches the choice by device,
-// driver and decade of the triangle count. Views trace camera rays only, which would mislead the measurement, so they use
-// `compute`. Throws UserError for a view that the backend does not support.
-Backend choose_backend(const RenderJob& job, const Device& device, const GpuScene& scene);
-
 }  // namespace lab

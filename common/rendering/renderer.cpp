@@ -130,10 +130,8 @@ bool Renderer::advance(uint32_t target_samples) {
     // A pass brings all blocks to pass_samples_, several samples at a time if all blocks fit into one dispatch.
     const uint32_t blocks = block_count();
     if (next_block_ == 0) {
-        // More at once keep lanes busy: one whose pixel is finished waits for its neighbours.
-        const auto at_once = tracer_->paths_at_once();
-        const bool has_lanes = at_once && at_once->count > 1;
-        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, has_lanes ? samples_per_group : 1.0));
+        const double fewest = tracer_->wants_samples_together() ? samples_per_group : 1;
+        const auto step = static_cast<uint32_t>(std::max(blocks_per_dispatch_ / blocks, fewest));
         pass_samples_ = finished_samples_ + std::min(step, target_samples - finished_samples_);
     }
     const uint32_t step = pass_samples_ - finished_samples_;

@@ -8,6 +8,7 @@
 #include "error.h"
 #include "files/project_folder.h"
 #include "rendering/numbers_text.h"
+#include "scene/material_keywords.h"
 
 namespace lab {
 namespace {
@@ -36,8 +37,7 @@ double largest_albedo(const Scene& scene) {
     for (size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
         const bool has_microfacets = !scene.microfacets.empty() && scene.microfacets[i].roughness > 0;
-        const vec3 albedo =
-            material.refractive_index > 0 || has_microfacets ? vec3(1) : material.diffuse_albedo + material.specular_albedo;
+        const vec3 albedo = material.refractive_index > 0 || has_microfacets ? vec3(1) : albedo_of(material);
         largest = std::max({largest, albedo.r, albedo.g, albedo.b});
     }
     for (const Medium& medium : scene.media)
@@ -81,7 +81,7 @@ CameraPose camera_of(const Chapter& chapter, const Scene& scene, const Options& 
             .target = wanted.target.value_or(scene.camera.target),
             .up = wanted.up.value_or(scene.camera.up),
             .vertical_fov = wanted.vertical_fov.value_or(scene.camera.vertical_fov),
-            .aperture_diameter = chapter.lens ? wanted.aperture_diameter.value_or(scene.camera.aperture_diameter) : 0,
+            .aperture_diameter = chapter.handles.lens ? wanted.aperture_diameter.value_or(scene.camera.aperture_diameter) : 0,
             .focus_distance = wanted.focus_distance.value_or(scene.camera.focus_distance)};
 }
 

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "image/image_checks.h"
 #include "scene/coincident_lights.h"
+#include "scene/material_keywords.h"
 #include "scene/microfacets.h"
 #include "scene/obj_file.h"
 
@@ -159,17 +160,24 @@ class Assembly {
         return static_cast<uint32_t>(scene_.materials.size() - 1);
     }
 
-    // Divides Kd and Ks by the largest channel of their sum if it exceeds 1.
+    // Divides albedos by the largest channel of their sum if it exceeds 1.
     void limit_reflectance(const ObjFile& obj, const std::string& name, Material& material) {
-        const dvec3 albedo = dvec3(material.diffuse_albedo) + dvec3(material.specular_albedo);
+        dvec3 albedo(0);
+        std::string names;
+        for (const MaterialKeyword& keyword : material_keywords) {
+            if (!keyword.member.is_albedo || material.*keyword.member.colour == vec3(0)) continue;
+            albedo += dvec3(material.*keyword.member.colour);
+            names += (names.empty() ? "" : " and ") + std::string(keyword.name);
+        }
         const double largest = std::max({albedo.x, albedo.y, albedo.z});
         if (largest <= 1) return;
-        scene_.warnings.push_back(obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " +
-                                  (specular_ ? "Kd and Ks are" : "Kd is") + " divided by " + std::to_string(largest));
+        scene_.warnings.push_back(obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " + names +
+                                  (names.find(' ') == names.npos ? " is" : " are") + " divided by " + std::to_string(largest));
         // Rounded down, so that rounding errors cannot push the sum above 1.
         constexpr double rounding = 1 - 0x1p-23;
-        material.diffuse_albedo = vec3(dvec3(material.diffuse_albedo) / largest * rounding);
-        material.specular_albedo = vec3(dvec3(material.specular_albedo) / largest * rounding);
+        for (const MaterialKeyword& keyword : material_keywords)
+            if (keyword.member.is_albedo)
+                material.*keyword.member.colour = vec3(dvec3(material.*keyword.member.colour) / largest * rounding);
     }
 
     // Materials often share their roughness, so few albedos need integrating.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "error.h"
+#include "scene/material_keywords.h"
 #include "scene/microfacets.h"
 
 namespace lab {
@@ -15,19 +15,6 @@ namespace {
 constexpr float default_coat_index = 1.5f;  // of plastic and lacquer
 
 constexpr uint64_t max_mtl_bytes = uint64_t{16} << 20;
-
-// How many numbers follow a keyword, and the largest sensible value; none may be negative. One number stands for three equal
-// ones.
-struct Numbers {
-    size_t count;
-    float largest;
-};
-constexpr float any = std::numeric_limits<float>::max();
-const std::map<std::string_view, Numbers> number_keywords = {
-    {"Kd", {3, any}}, {"Ke", {3, any}}, {"Ks", {3, any}}, {"Tf", {3, 1}}, {"Kt", {3, 1}}, {"Ns", {1, any}},
-    {"Ni", {1, any}}, {"d", {1, 1}},    {"Tr", {1, 1}},   {"Pr", {1, 1}}, {"Pm", {1, 1}},
-};
-const std::set<std::string_view> other_keywords = {"newmtl", "map_Kd", "Ka", "illum"};
 
 // Options of a texture, and how many words may follow them. All but the first of these are numbers that may be left out.
 const std::map<std::string_view, size_t> texture_options = {
@@ -50,24 +37,24 @@ struct Stated {
 };
 
 // Reads a statement with numbers.
-void read_numbers(const Statements& statement, Stated& material, std::set<std::string>& ignored) {
-    const auto known = number_keywords.find(statement.keyword());
-    const auto& [keyword, allowed] = *known;
+void read_numbers(const Statements& statement, const MaterialKeyword& allowed, Stated& material, std::set<std::string>& ignored) {
+    const std::string_view keyword = allowed.name;
     const std::string name(keyword);
+    const auto count = static_cast<size_t>(allowed.count);
     std::vector<std::string_view> words = statement.words();
     if (keyword == "d" && !words.empty() && words[0] == "-halo") {
         ignored.insert("-halo");
         words.erase(words.begin());
     }
-    if (words.size() == 1) words.resize(allowed.count, words[0]);
-    if (words.size() < allowed.count)
-        statement.fail(name + " needs " + (allowed.count == 1 ? "a number" : std::to_string(allowed.count) + " numbers"));
+    if (words.size() == 1) words.resize(count, words[0]);
+    if (words.size() < count) statement.fail(name + " needs " + (count == 1 ? "a number" : std::to_string(count) + " numbers"));
     vec3& values = material.numbers[keyword == "Kt" ? "Tf" : keyword];
-    for (size_t i = 0; i < allowed.count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
         const std::optional<float> number = to_number(words[i]);
         if (!number || *number < 0 || *number > allowed.largest)
-            statement.fail(name + " " + in_quotes(words[i]) +
-                           (allowed.largest == any ? ": must be a finite number, at least 0" : ": must be a number in [0,1]"));
+            statement.fail(
+                name + " " + in_quotes(words[i]) +
+                (allowed.largest == any_number ? ": must be a finite number, at least 0" : ": must be a number in [0,1]"));
         values[static_cast<int>(i)] = *number;
     }
 }
@@ -103,12 +90,13 @@ std::vector<Stated> read_statements(Statements statements, const std::string& fi
         } else if (materials.empty()) {
             statements.fail("not a material file: it must start with newmtl");
         }
-        if (number_keywords.contains(keyword))
-            read_numbers(statements, materials.back(), ignored);
+        const auto known = std::ranges::find(material_keywords, keyword, &MaterialKeyword::name);
+        if (known == std::end(material_keywords))
+            ignored.insert(in_quotes(keyword));
+        else if (known->count > 0)
+            read_numbers(statements, *known, materials.back(), ignored);
         else if (keyword == "map_Kd")
             read_texture_name(statements, materials.back(), ignored);
-        else if (!other_keywords.contains(keyword))
-            ignored.insert(in_quotes(keyword));
     }
     if (materials.empty()) throw UserError(file + ": there is no material (newmtl) in it");
     if (!ignored.empty()) {
@@ -171,16 +159,13 @@ MtlMaterial make_material(const std::string& file, const Stated& stated, const s
                           std::vector<std::string>& warnings) {
     const std::string subject = file + ": material " + in_quotes(stated.name) + ": ";
     const bool has_texture = !stated.texture.empty(), is_opaque = !(stated.opacity() < 1);
-    Material material = {
-        .diffuse_albedo = stated.vector("Kd", vec3(has_texture ? 1 : 0)),
-        .albedo_texture = -1,
-        .emission = stated.vector("Ke", vec3(0)),
-        .specular_exponent = stated.number("Ns", 1),
-        .specular_albedo = stated.vector("Ks", vec3(0)),
-        .refractive_index = 0,
-        .absorption = vec3(0),
-        .light_density = 0,
-    };
+    Material material{};
+    material.albedo_texture = -1;
+    for (const auto& [name, count, largest, meaning, if_missing, member] : material_keywords) {
+        if (member.colour) material.*member.colour = stated.vector(name, vec3(0));
+        if (member.number) material.*member.number = stated.number(name, member.default_number);
+    }
+    if (has_texture && !stated.has("Kd")) material.diffuse_albedo = vec3(1);
     if (!is_opaque) make_dielectric(subject, stated, material, warnings);
     if (is_opaque && has_texture && material.diffuse_albedo == vec3(0))
         warnings.push_back(subject + "Kd 0 makes map_Kd black, as they are multiplied: set Kd 1 1 1 to see the texture");

@@ -122,7 +122,7 @@ Scene load_scene(const std::filesystem::path& file, bool specular) {
     turn_inside_out_glass(scene, bodies, has_medium);
     separate_contacts(scene, bodies);
     load([&] { add_media(description, bodies, sources, scene); });
-    scene.has_added_lobes = specular && !description.specular && features_of(scene).specular;
+    scene.has_added_lobes = specular && !description.specular && features_of(scene).specular();
 
     if (!description.light_probe.empty()) {
         load([&] { scene.light_probe = read_radiance(description.light_probe, scene.warnings); });

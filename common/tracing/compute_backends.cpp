@@ -1,7 +1,7 @@
 // The backends that are compute shaders: `compute` traverses our hierarchy, `query` the driver's.
-#include "tracing/backends.h"
 #include "tracing/gpu_bvh.h"
 #include "tracing/hardware_bvh.h"
+#include "tracing/vulkan_backends.h"
 
 namespace lab {
 namespace {

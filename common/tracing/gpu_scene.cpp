@@ -23,10 +23,8 @@ void require_visible(const Device& device, size_t texture_count, size_t buffer_c
 
 }  // namespace
 
-GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets,
-                   bool handles_media, bool uses_light_tree)
-    : scene_(&scene) {
-    const SceneArrays arrays(scene, strategy, samples_probe, handles_microfacets, handles_media, uses_light_tree);
+GpuScene::GpuScene(const Device& device, const Scene& scene, Strategy strategy, const Capabilities& handles) : scene_(&scene) {
+    const SceneArrays arrays(scene, strategy, handles);
     defines_ = arrays.defines();
     // The driver builds its acceleration structure from the first two.
     vk::BufferUsageFlags build_input;

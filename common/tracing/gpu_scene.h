@@ -12,8 +12,7 @@ class GpuScene {
   public:
     // The arguments are those of SceneArrays. If the device cannot hold the scene, throws DeviceFailure before allocating
     // anything.
-    GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both, bool samples_probe = false,
-             bool handles_microfacets = false, bool handles_media = false, bool uses_light_tree = false);
+    GpuScene(const Device& device, const Scene& scene, Strategy strategy = Strategy::both, const Capabilities& handles = {});
 
     const Scene& scene() const { return *scene_; }
     const Buffer& positions() const { return buffers_[0]; }

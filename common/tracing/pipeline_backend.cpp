@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tracing/backends.h"
 #include "tracing/hardware_bvh.h"
+#include "tracing/vulkan_backends.h"
 
 namespace lab {
 namespace {

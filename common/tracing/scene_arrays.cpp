@@ -9,21 +9,20 @@ std::string to_string(Strategy strategy) {
     return strategy == Strategy::both ? "both" : strategy == Strategy::light ? "light" : "bounces";
 }
 
-SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets, bool handles_media,
-                         bool uses_light_tree) {
+SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, const Capabilities& handles) {
     const SceneFeatures features = features_of(scene);
     defines_ = features.defines();
     add("positions", BINDING_POSITIONS, scene.positions);
     add("triangles", BINDING_TRIANGLES, scene.triangles);
     add("materials of triangles", BINDING_TRIANGLE_MATERIALS, scene.triangle_materials);
-    add_lights(scene, features, strategy, samples_probe, uses_light_tree);
+    add_lights(scene, features, strategy, handles);
     add("materials", BINDING_MATERIALS, lights_.materials);
-    if (features.microfacets && handles_microfacets) {
+    if (features.microfacets && handles.microfacets) {
         add("microfacets", BINDING_MICROFACETS, scene.microfacets);
         defines_.emplace_back("FEATURE_MICROFACETS");
         if (scene.multiple_scattering) defines_.emplace_back("FEATURE_MULTIPLE_SCATTERING");
     }
-    if (features.media && handles_media) {
+    if (features.media && handles.media) {
         add("media", BINDING_MEDIA, scene.media);
         defines_.emplace_back("FEATURE_MEDIA");
         if (!scene.densities.empty()) {
@@ -62,9 +61,8 @@ SceneArrays::SceneArrays(const Scene& scene, Strategy strategy, bool samples_pro
     add_images(scene, features);
 }
 
-void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe,
-                             bool uses_light_tree) {
-    samples_probe = samples_probe && features.light_probe && strategy != Strategy::bounces;
+void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, const Capabilities& handles) {
+    const bool samples_probe = features.light_probe && handles.light_probe_sampling && strategy != Strategy::bounces;
     const bool samples_triangles = features.area_lights && strategy != Strategy::bounces;
     const float probe_probability = !samples_probe ? 0 : !samples_triangles ? 1 : LIGHT_PROBE_PROBABILITY;
     lights_.materials = scene.materials;
@@ -74,7 +72,7 @@ void SceneArrays::add_lights(const Scene& scene, const SceneFeatures& features, 
         defines_.emplace_back("FEATURE_LIGHT_TRIANGLES");
     }
     // Two triangles are one lamp, or leave little to choose: the table alone costs less.
-    if (samples_triangles && uses_light_tree && lights_.triangles.size() > 2) {
+    if (samples_triangles && handles.light_tree && lights_.triangles.size() > 2) {
         light_tree_ = build_light_tree(scene, lights_);
         add("nodes of the light tree", BINDING_LIGHT_NODES, light_tree_.nodes);
         add("leaves of the light tree", BINDING_LIGHT_LEAVES, light_tree_.leaves);

@@ -18,6 +18,16 @@ enum class Strategy { both, light, bounces };
 inline constexpr std::array all_strategies{Strategy::both, Strategy::light, Strategy::bounces};
 std::string to_string(Strategy strategy);
 
+// What an estimator handles of a scene. Shaders know nothing of what else there is.
+struct Capabilities {
+    bool light_probe_sampling = false;  // light samples also go to a light probe
+    bool dielectrics = false;
+    bool microfacets = false;  // rough metal, plastic and glass (Pr)
+    bool lens = false;         // has a camera with an aperture
+    bool media = false;        // light scatters between surfaces, too
+    bool light_tree = false;   // light samples choose a triangle by a tree over all of them
+};
+
 struct SceneArray {
     const char* name;
     uint32_t binding;
@@ -27,11 +37,8 @@ struct SceneArray {
 
 class SceneArrays {
   public:
-    // Builds tables to sample lights from, unless only bounces find them; a light probe gets one if the estimator samples it.
-    // Materials have microfacets, and volumes media, if the estimator handles them, and emissive triangles a tree if it uses one.
-    // The scene must outlive the result.
-    SceneArrays(const Scene& scene, Strategy strategy, bool samples_probe, bool handles_microfacets, bool handles_media,
-                bool uses_light_tree);
+    // Builds tables to sample lights from, unless only bounces find them. The scene must outlive the result.
+    SceneArrays(const Scene& scene, Strategy strategy, const Capabilities& handles);
     SceneArrays(const SceneArrays&) = delete;
     SceneArrays& operator=(const SceneArrays&) = delete;
 
@@ -47,8 +54,7 @@ class SceneArrays {
     void add(const char* name, uint32_t binding, const std::vector<T>& data) {
         buffers_.push_back({name, binding, std::as_bytes(std::span(data))});
     }
-    void add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, bool samples_probe,
-                    bool uses_light_tree);
+    void add_lights(const Scene& scene, const SceneFeatures& features, Strategy strategy, const Capabilities& handles);
     void add_images(const Scene& scene, const SceneFeatures& features);
 
     std::vector<SceneArray> buffers_, images_;

@@ -7,19 +7,10 @@
 #include "files/file.h"
 #include "files/project_folder.h"
 #include "scene/json_object.h"
-#include "tracing/backends.h"
+#include "tracing/vulkan_backends.h"
 
 namespace lab {
 namespace {
-
-void require_support(Backend backend, const DeviceDescription& device) {
-    if (device.supports(backend)) return;
-    std::string working;
-    for (const auto& [other, missing] : device.missing)
-        if (missing.empty()) working += (working.empty() ? "" : ", ") + to_string(other);
-    throw DeviceError("device '" + device.name + "' lacks " + device.missing.at(backend).front() + " for the backend '" +
-                      to_string(backend) + "'; these work on it: " + working);
-}
 
 // These shaders of shaders/ and everything they include, as shader_files() returns them.
 std::map<std::filesystem::path, std::filesystem::path> files_of(std::initializer_list<const char*> names,
@@ -139,15 +130,6 @@ std::optional<double> DeviceTracer::trace(std::span<const DispatchParameters> st
     const double seconds = device_.submit(record_steps, has_ended_ ? seconds_of_later : seconds_of_first);
     has_ended_ = steps.back().target_samples > 0;
     return seconds;
-}
-
-bool is_suitable(Backend backend, const Device& device, const Scene& scene) {
-    return device.description().supports(backend) && (!backend->suits || backend->suits(device, scene));
-}
-
-std::unique_ptr<SceneBackend> build_scene_backend(Backend backend, const Device& device, const GpuScene& scene) {
-    require_support(backend, device.description());
-    return backend->build(device, scene);
 }
 
 }  // namespace lab

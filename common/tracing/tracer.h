@@ -51,12 +51,9 @@ class Tracer {
     // bytes is that of the film's binding. Returns the seconds on the device, or nothing if an interrupt ended blocks too early.
     virtual std::optional<double> trace(std::span<const DispatchParameters> steps, uint32_t block_count,
                                         uint32_t film_offset) const = 0;
-    // How many paths a core of the CPU traces at once, and why not more of them.
-    struct PathsAtOnce {
-        int count = 1;
-        std::string why_not_more = {};
-    };
-    virtual std::optional<PathsAtOnce> paths_at_once() const { return std::nullopt; }  // nothing for other devices
+    // Whether several samples of a pixel take less time together, even if a dispatch has many pixels.
+    virtual bool wants_samples_together() const { return false; }
+    virtual std::string note() const { return {}; }  // what users of this backend should know, as a line of the program's
 };
 
 // A scene's acceleration structure, shared by its tracers.
@@ -72,11 +69,5 @@ class SceneBackend {
     virtual size_t bytes() const = 0;          // of device memory
     virtual double build_seconds() const = 0;  // on the CPU or the device
 };
-
-// Whether the device lacks nothing for the backend, which may be the fastest one for the scene there.
-bool is_suitable(Backend backend, const Device& device, const Scene& scene);
-
-// Device and scene must outlive the result. Throws DeviceError if the device lacks something for the backend.
-std::unique_ptr<SceneBackend> build_scene_backend(Backend backend, const Device& device, const GpuScene& scene);
 
 }  // namespace lab

@@ -9,6 +9,7 @@
 #include "error.h"
 #include "files/file.h"
 #include "files/project_folder.h"
+#include "rendering/backend_choice.h"
 #include "rendering/numbers_text.h"
 #include "rendering/render_job.h"
 #include "rendering/settings.h"
@@ -190,7 +191,7 @@ void Controls::draw_scene(Session& session, Options& options) {
         options.light.background = glm::max(background, vec3(0));
     // The file's own lobes cannot be switched off.
     const Scene& scene = *session.build().job.scene;
-    const bool are_of_file = !scene.has_added_lobes && features_of(scene).specular;
+    const bool are_of_file = !scene.has_added_lobes && features_of(scene).specular();
     bool has_lobes = are_of_file || options.scene.specular;
     ImGui::BeginDisabled(are_of_file);
     if (ImGui::Checkbox(are_of_file ? "specular lobes (Ks), of the scene" : "specular lobes (Ks)", &has_lobes))
@@ -227,8 +228,8 @@ void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees", ImGuiSliderFlags_AlwaysClamp))
         session.set_camera(pose);
     const float distance = session.build().job.parameters.camera.focus_distance;
-    if (session.chapter().lens && ImGui::SliderFloat("aperture diameter", &pose.aperture_diameter, 0, 0.25f * distance, "%.3g",
-                                                     ImGuiSliderFlags_AlwaysClamp))
+    if (session.chapter().handles.lens && ImGui::SliderFloat("aperture diameter", &pose.aperture_diameter, 0, 0.25f * distance,
+                                                             "%.3g", ImGuiSliderFlags_AlwaysClamp))
         session.set_camera(pose);
     const auto copy = [&](const char* button, const std::string& text) {
         if (!ImGui::Button(button)) return;

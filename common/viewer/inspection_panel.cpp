@@ -99,7 +99,8 @@ void InspectionPanel::draw_controls(Session& session) {
     }
     const auto& path = inspection_.path();
     const PathVertex* seen = path && !is_beside_ ? first_seen(*path, *session.build().job.scene) : nullptr;
-    if (session.chapter().lens && seen && ImGui::Button("Focus on the point that was clicked")) session.focus_on(seen->position);
+    if (session.chapter().handles.lens && seen && ImGui::Button("Focus on the point that was clicked"))
+        session.focus_on(seen->position);
     if (ImGui::CollapsingHeader("look inside")) {
         int overlay = static_cast<int>(overlay_.shown);
         ImGui::Combo("tiles (T)", &overlay, overlay_names, static_cast<int>(std::size(overlay_names)));

@@ -50,7 +50,7 @@ class Subject {
   public:
     Subject(const Device& device, Backend backend, const std::string& chapter, const GrowthStep& step)
         : scene_(step.scene), gpu_scene_(device, scene_), estimator_(chapter_estimator(chapter)) {
-        scene_backend_ = build_scene_backend(backend, device, gpu_scene_);
+        scene_backend_ = backend->build(device, gpu_scene_);
         RenderParameters parameters = default_parameters(scene_, step.image_size);
         parameters.max_path_length = step.max_path_length;
         parameters.roulette_start = 1;
@@ -156,7 +156,7 @@ json measure_growth(const Device& device, Backend backend, const Growth& growth,
 
 int run(const Options& options) {
     check_writable(options.output, {".json"});  // fail before spending minutes
-    const Device device({.choice = options.device, .backends = all_backends});
+    const Device device({.choice = options.device});
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), options.size, options.size);
     json record = record_of(device);
@@ -166,7 +166,7 @@ int run(const Options& options) {
     record["scenes"] = describe_shipped_scenes(device);
     std::vector<Backend> backends;
     std::copy_if(std::begin(all_backends), std::end(all_backends), std::back_inserter(backends), [&](Backend backend) {
-        return description.supports(backend) && (backend != native_backend || description.kind == "CPU");
+        return is_supported(backend, description) && (backend != native_backend || description.kind == "CPU");
     });
     for (const Backend backend : backends)
         if (backend != native_backend)  // which has no SPIR-V to count

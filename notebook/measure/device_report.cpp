@@ -55,7 +55,7 @@ json report_hit_points(const Device& device) {
 }
 
 int run(const std::string& choice, const std::filesystem::path& output) {
-    const Device device({.choice = choice, .backends = all_backends});
+    const Device device({.choice = choice});
     const auto& description = device.description();
     std::printf("%s, %s: largest errors against double\n", description.name.c_str(), description.driver.c_str());
     json record = record_of(device);

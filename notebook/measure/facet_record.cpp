@@ -32,8 +32,8 @@ class Subject {
         : device_(device),
           chapter_(chapter),
           scene_(scene),
-          gpu_scene_(device, scene, Strategy::both, chapter.light_probe_sampling, chapter.microfacets),
-          scene_backend_(build_scene_backend(compute_backend, device, gpu_scene_)) {}
+          gpu_scene_(device, scene, Strategy::both, chapter.handles),
+          scene_backend_(compute_backend->build(device, gpu_scene_)) {}
 
     Renderer renderer(const Options& options) const {
         return {device_, *scene_backend_, make_estimator(chapter_, options), parameters(options)};
@@ -115,7 +115,7 @@ json measure_furnace(const Device& device, const Chapter& chapter, double roughn
 
 int run(const Settings& settings) {
     check_writable(settings.output, {".json"});  // fail before spending minutes
-    const Device device({.choice = settings.device, .backends = all_backends});
+    const Device device({.choice = settings.device});
     const Chapter chapter = load_chapter(chapter_named("microfacets"));
     json record = record_of(device);
     record.update({{"chapter", chapter.name}, {"scene", "studio"}, {"size", settings.size}, {"samples", settings.samples}});

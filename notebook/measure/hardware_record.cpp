@@ -58,7 +58,7 @@ json measure(const Device& device, const Subject& subject) {
     device.submit([&](const vk::raii::CommandBuffer& commands) { commands.fillBuffer(rays.handle(), 0, VK_WHOLE_SIZE, 0); });
     const Binding ray_binding = storage_binding(BINDING_RECORDED_RAYS, rays);
     {
-        const auto scene_backend = build_scene_backend(compute_backend, device, gpu_scene);
+        const auto scene_backend = compute_backend->build(device, gpu_scene);
         Estimator record{measure / "record_rays.glsl", path_defines(compute_backend, path_count), estimator.file};
         record.defines.insert(record.defines.end(), estimator.defines.begin(), estimator.defines.end());
         Renderer recorder(device, *scene_backend, record, parameters, {&ray_binding, 1});
@@ -71,8 +71,8 @@ json measure(const Device& device, const Subject& subject) {
                 {"triangles", scene.triangles.size()},
                 {"backends", json::object()}};
     for (const Backend backend : all_backends) {
-        if (!device.description().supports(backend)) continue;
-        const auto scene_backend = build_scene_backend(backend, device, gpu_scene);
+        if (!is_supported(backend, device.description())) continue;
+        const auto scene_backend = backend->build(device, gpu_scene);
         Renderer path_tracer(device, *scene_backend, estimator, parameters);
         const Estimator replay{measure / "replay/path_trace.glsl", path_defines(backend, path_count)};
         Renderer replayer(device, *scene_backend, replay, parameters, {&ray_binding, 1});
@@ -97,7 +97,7 @@ json measure(const Device& device, const Subject& subject) {
 
 int run(const RecordSettings& settings) {
     check_writable(settings.output, {".json"});  // fail before spending minutes
-    const Device device({.choice = settings.device, .backends = all_backends});
+    const Device device({.choice = settings.device});
     const uint32_t size = settings.size;
     const auto& description = device.description();
     std::printf("%s, %s, %ux%u pixels\n", description.name.c_str(), description.driver.c_str(), size, size);

@@ -5,7 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "gpu/device.h"
 
 namespace lab {

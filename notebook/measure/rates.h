@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "rendering/renderer.h"
 
 namespace lab {

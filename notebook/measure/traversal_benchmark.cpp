@@ -32,7 +32,7 @@ double median(Runs runs) {
 struct Side {
     Side(Backend which, const Device& device, const GpuScene& scene, const RenderParameters& parameters)
         : backend(which),
-          scene_backend(build_scene_backend(which, device, scene)),
+          scene_backend(which->build(device, scene)),
           renderer(device, *scene_backend, {project_folder() / "notebook/measure/path_trace.glsl"}, parameters) {
         renderer.set_dispatch_seconds(1);
     }
@@ -68,7 +68,7 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
     const GpuScene gpu_scene(device, scene);
     std::vector<Side> sides;
     for (const Backend backend : {compute_backend, native_backend})
-        if (device.description().supports(backend)) sides.emplace_back(backend, device, gpu_scene, parameters);
+        if (is_supported(backend, device.description())) sides.emplace_back(backend, device, gpu_scene, parameters);
     for (uint32_t run = 0; run <= options.runs; ++run)
         for (Side& side : sides) {
             const auto start = std::chrono::steady_clock::now();
@@ -87,7 +87,7 @@ void compare(const Device& device, const Options& options, uint32_t segments, ui
 }
 
 int run(const Options& options) {
-    const Device device({.choice = options.device, .backends = all_backends});
+    const Device device({.choice = options.device});
     std::printf("%s, %s\n", device.description().name.c_str(), device.description().driver.c_str());
     compare(device, options, 5, 3);
     compare(device, options, 200, 100);

@@ -47,7 +47,7 @@ def make_material(material):
     if material.refractive_index > 0:
         shader = new_node(tree, "BsdfGlass", Color=colour(np.ones(3)), Roughness=0.0, IOR=material.refractive_index)
     else:
-        shader = new_node(tree, "BsdfDiffuse", Color=colour(material.diffuse), Roughness=0.0)
+        shader = new_node(tree, "BsdfDiffuse", Color=colour(material.diffuse_albedo), Roughness=0.0)
     if material.emission.any():
         shader = added(tree, shader, front_emission(tree, material.emission))
         made.cycles.emission_sampling = "FRONT"

@@ -26,7 +26,7 @@ def material_properties(name, material):
     if material.refractive_index > 0:
         values = {"type": "glass", "kr": [1.0] * 3, "kt": [1.0] * 3, "interiorior": material.refractive_index, "exteriorior": 1.0}
     else:
-        values = {"type": "matte", "kd": floats(material.diffuse)}
+        values = {"type": "matte", "kd": floats(material.diffuse_albedo)}
     if material.emission.any():
         # By itself LuxCore leaves lamps of many triangles to chance.
         values |= {"emission": floats(material.emission), "emission.directlightsampling.type": "ENABLED"}

@@ -12,7 +12,7 @@ class Renderer:
                                                          own_normals=True, sampler=options.sampler)
         self.name, self.discarded_seconds, self.compiled = f"Mitsuba {mi.__version__}", 0.0, set()  # numbers of samples
         self.largest = max(1, (GPU_BATCH_PATHS if mi.variant() == GPU_VARIANT else MAX_BATCH_PATHS) // (options.width * options.height))
-        glossy = any(surface.material.specular.any() for surface in scene.surfaces)
+        glossy = any(surface.material.specular_albedo.any() for surface in scene.surfaces)
         self.note = "the Phong lobe is Python, which slows Mitsuba down" if glossy and mi.variant() == "scalar_rgb" else ""
 
     def frame(self, samples, seed):

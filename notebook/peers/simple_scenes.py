@@ -8,7 +8,7 @@ def refuse_what_peers_lack(scene, name):
     materials = [surface.material for surface in scene.surfaces]
     lacks = {
         "microfacets of our formula": any(material.roughness > 0 for material in materials),
-        "a Phong lobe": any(material.specular.any() for material in materials),
+        "a Phong lobe": any(material.specular_albedo.any() for material in materials),
         "glass that absorbs": any(material.absorption.any() for material in materials),
         "media of meshes": any(surface.is_open or "extinction" in (surface.inside or {}) for surface in scene.surfaces),
         "textures": any(material.texture for material in materials),

@@ -6,9 +6,17 @@ struct BsdfSample {
     vec3 direction;         // ω_k, unit length
     vec3 weight;            // ρ |n·ω_k| over the density, per colour channel; 0 where no light leaves into ω_k
     float density;          // of ω_k with respect to solid angle; 0 for a single direction
-    bool is_single;         // whether the material scatters into single directions, which no light sample can meet
     float radiance_scale;   // the change of radiance at a refraction: 1/η², else 1
 };
+
+// The sum of the lobes of an opaque surface: light that it scatters evenly, ρ = Kd / π, and what the scene has besides.
+vec3 get_lobes_brdf(ShadingData s, vec3 in_direction) {
+    vec3 brdf = s.diffuse_albedo / PI;
+#ifdef FEATURE_SPECULAR
+    brdf += get_phong_brdf(s, in_direction);
+#endif
+    return brdf;
+}
 
 // The default get_brdf(), unless the chapter's folder brings its own materials in a file of this name.
 #include "brdf.glsl"

@@ -76,14 +76,6 @@ layout(scalar, set = 0, binding = BINDING_PROBE_CELLS) readonly buffer ProbeCell
 #ifdef FEATURE_LIGHT_PROBE
 layout(set = 0, binding = BINDING_LIGHT_PROBE) uniform texture2D light_probe;
 #endif
-#ifdef WORLD_TRIANGLES
-layout(scalar, set = 0, binding = BINDING_WORLD_TRIANGLES) readonly buffer WorldTriangles {
-    WorldTriangle world_triangles[];
-};
-layout(scalar, set = 0, binding = BINDING_FIRST_WORLD_TRIANGLES) readonly buffer FirstWorldTriangles {
-    uint first_world_triangles[];  // per instance: the index of triangle 0, if it had that
-};
-#endif
 
 #ifdef FEATURE_DIELECTRICS
 uint get_material_class(uint triangle) {

@@ -10,6 +10,7 @@ struct ShadingData {
 #ifdef FEATURE_LIGHT_TREE
     uint light;  // place of the triangle in light_leaves, if it emits
 #endif
+    uint material;          // index into the scene's materials
     vec3 diffuse_albedo;    // in [0,1]: the fraction of light that is reflected diffusely, per colour channel
 #ifdef FEATURE_SPECULAR
     vec3 specular_albedo;     // fraction of light that the Phong lobe reflects, per colour channel, in [0,1]
@@ -20,7 +21,6 @@ struct ShadingData {
     float relative_index;  // η of a dielectric: refractive index beyond the surface over that on the ray's side
     vec3 transmittance;    // fraction of light that passes from the ray's origin to x_k, per colour channel
 #ifdef FEATURE_MICROFACETS
-    uint material;             // index into the scene's materials
     float roughness;           // α of its microfacets, in [0,1]; 0 if it has none
     float metalness;           // fraction that is metal, in [0,1]
     bool is_rough_dielectric;  // its microfacets transmit light; is_dielectric is false then
@@ -62,46 +62,7 @@ float get_error_bound(vec3 magnitude, vec3 scaled_normal) {
     return 8.0 * ROUNDING * (magnitude.x + magnitude.y + magnitude.z) * slenderness;
 }
 
-#ifdef WORLD_TRIANGLES
-// Interpolates the vertices of the hit triangle, which world_triangles.comp has put into a table. The normal points to the front.
-SurfacePoint get_surface_point(Hit hit) {
-    WorldTriangle triangle = world_triangles[first_world_triangles[hit.instance] + hit.triangle];
-    vec3 w = get_vertex_weights(hit);
-    return SurfacePoint(triangle.corners * w, triangle.normal, dot(triangle.offsets, w));
-}
-#else
-// Interpolates the vertices of the hit triangle. The normal points to the front.
-SurfacePoint get_surface_point(Hit hit) {
-    SurfacePoint point;
-    vec3 w = get_vertex_weights(hit);
-    uvec3 corners = triangles[hit.triangle];
-    vec3 x_0 = positions[corners.x], x_1 = positions[corners.y], x_2 = positions[corners.z];
-    point.position = interpolate(x_0, x_1, x_2, w);
-    vec3 magnitude = interpolate(abs(x_0), abs(x_1), abs(x_2), w);
-    // Counter-clockwise seen from the front: the loader makes sure of that.
-    vec3 edge_1 = x_1 - x_0, edge_2 = x_2 - x_0;
-    vec3 normal = get_scaled_normal(edge_1, edge_2);
-    point.offset = get_error_bound(magnitude, normal);
-    // A triangle so narrow that its area underflows: any direction perpendicular to its longer edge will do.
-    if (normal == vec3(0.0))
-        normal = get_shading_space(
-            normalize_scaled(max_component(edge_1) > max_component(edge_2) ? edge_1 : edge_2))[0];
-    point.geometric_normal = normalize_scaled(normal);
-#ifdef FEATURE_TRANSFORMS
-    Instance instance = instances[hit.instance];
-    mat3 linear = mat3(instance.object_to_world);
-    point.position = linear * point.position + instance.object_to_world[3];
-    magnitude = mat3(abs(linear[0]), abs(linear[1]), abs(linear[2])) * magnitude + abs(instance.object_to_world[3]);
-    // Some backends intersect in object space and others in world space, so the bound covers both. The transformation into world
-    // space stretches a distance from the triangle by as much as it shortens the normal.
-    normal = instance.normal_to_world * point.geometric_normal;
-    point.geometric_normal = normalize_scaled(normal);
-    point.offset = max(point.offset / dot(normal, point.geometric_normal),
-                       get_error_bound(magnitude, get_scaled_normal(linear * edge_1, linear * edge_2)));
-#endif
-    return point;
-}
-#endif
+#include "world/surface_point.glsl"  // get_surface_point()
 
 #ifdef FEATURE_LIGHT_TREE
 // The place of an emissive triangle in light_leaves.
@@ -142,7 +103,8 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     if (normal != vec3(0.0)) s.normal = normalize_scaled(normal);
 #endif
 
-    Material material = materials[triangle_materials[hit.triangle]];
+    s.material = triangle_materials[hit.triangle];
+    Material material = materials[s.material];
     s.diffuse_albedo = material.diffuse_albedo;
     s.texture_coordinates = vec2(0.0);
 #ifdef FEATURE_TEXTURES
@@ -181,7 +143,6 @@ ShadingData get_shading_data(Hit hit, vec3 ray_direction) {
     if (s.is_dielectric && !is_front) s.transmittance = exp(-material.absorption * hit.distance);
 #endif
 #ifdef FEATURE_MICROFACETS
-    s.material = triangle_materials[hit.triangle];
     s.roughness = microfacets[s.material].roughness;
     s.metalness = microfacets[s.material].metalness;
     s.is_rough_dielectric = s.is_dielectric && s.roughness > 0.0;

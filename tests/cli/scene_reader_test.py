@@ -28,13 +28,13 @@ class SceneReaderTest(ProgramTest):
         for old, new, missing in (("quad.mtl", "nowhere.mtl", "nowhere.mtl"), ("usemtl white", "usemtl pink", "pink")):
             with self.subTest(missing=missing):
                 (surface,), said = self.read(QUAD_OBJ.replace(old, new))
-                self.assertEqual(surface.material.diffuse.tolist(), [0.5] * 3)
+                self.assertEqual(surface.material.diffuse_albedo.tolist(), [0.5] * 3)
                 self.assertRegex(said, rf"\Anote: [^\n]*model\.obj:\d: there is no [^\n]*'{missing}'[^\n]*grey\n\Z")
 
     def test_names_with_spaces_around_them_are_found(self):
         self.write("quad.mtl", "newmtl  white \t\nKd 0.25 0.25 0.25\n")
         (surface,), said = self.read(QUAD_OBJ.replace("usemtl white", "usemtl   white  "))
-        self.assertEqual((surface.material.diffuse.tolist(), said), ([0.25] * 3, ""))
+        self.assertEqual((surface.material.diffuse_albedo.tolist(), said), ([0.25] * 3, ""))
 
     def test_a_material_file_that_is_named_twice_is_read_once(self):
         """As in the chapters: their hash of a scene covers everything they read."""
@@ -47,7 +47,7 @@ class SceneReaderTest(ProgramTest):
     def test_one_number_stands_for_three_and_halos_have_no_effect(self):
         self.write("quad.mtl", "newmtl white\nKd 0.25\nd -halo 0.5\nNi 1.5\nTf 0.5\n")
         (surface,), _ = self.read(QUAD_OBJ)
-        self.assertEqual(surface.material.diffuse.tolist(), [0.25] * 3)
+        self.assertEqual(surface.material.diffuse_albedo.tolist(), [0.25] * 3)
         self.assertEqual(surface.material.absorption.round(6).tolist(), [0.693147] * 3)
 
     def test_other_materials_than_those_of_the_mesh(self):
@@ -57,7 +57,7 @@ class SceneReaderTest(ProgramTest):
             self.write("more/other.mtl", mtl)
             scene = self.write("scene.json", json.dumps({"meshes": [{"file": "model.obj", "materials": "more/other.mtl"}]}))
             (surface,) = read_scene(scene).surfaces
-            self.assertEqual(surface.material.diffuse.tolist(), diffuse)
+            self.assertEqual(surface.material.diffuse_albedo.tolist(), diffuse)
 
     def test_a_reference_does_not_replace_the_probe_that_lights_it(self):
         self.write("quad.obj", QUAD_OBJ)
@@ -168,7 +168,7 @@ class WhatChaptersReadTest(ProgramTest):
                 self.assert_read_or_refused(key, self.read(usual, material), lambda: self.read(scene, material))
 
     def test_every_keyword_of_a_material(self):
-        known = self.known_to_chapters("mtl_file.cpp", r'(\{"\w+", \{\d|other_keywords = \{[^}]*\})')
+        known = self.known_to_chapters("material_keywords.h", r'(\{"\w+"), \d')
         self.assertEqual(known, KEYWORDS.keys())
         for keyword, (before, line) in KEYWORDS.items():
             with self.subTest(keyword=keyword):

@@ -78,7 +78,7 @@ TEST(Submissions, OfManySamplesGiveTheSameImage) {
 // threads share, and for one with a thread per pixel. The last part is smaller than the others.
 TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
     for (const Backend backend : all_backends) {
-        if (!test_device().description().supports(backend)) continue;
+        if (!is_supported(backend, test_device().description())) continue;
         for (const auto& size : {uvec2(53, 37), uvec2(520, 536)}) {
             RenderSettings whole{.width = size.x, .height = size.y, .samples = 3, .max_path_length = 2};
             whole.backend = backend;
@@ -93,7 +93,7 @@ TEST(Submissions, OfPartsOfTheFilmGiveTheSameImage) {
 // With a renderer made for a large image: restarted with a small one, it still uses one thread per pixel.
 FilmImage render_with_a_thread_for_each_pixel(const Scene& scene, const RenderSettings& settings) {
     const GpuScene gpu_scene = make_gpu_scene(scene, settings);
-    const auto scene_backend = build_scene_backend(settings.backend, test_device(), gpu_scene);
+    const auto scene_backend = settings.backend->build(test_device(), gpu_scene);
     RenderSettings large = settings;
     large.width = large.height = 640;
     Renderer renderer(test_device(), *scene_backend, settings.estimator, make_parameters(scene, large));
@@ -121,7 +121,7 @@ TEST_P(Determinism, ResumedRenderEqualsAnUninterruptedOne) {
     // With a film that shaders see in parts: the checkpoint contains the samples of all parts.
     const size_t two_rows_of_blocks = 2 * BLOCK_HEIGHT * settings().width * sizeof(FilmPixel);
     const GpuScene gpu_scene = make_gpu_scene(scene, settings());
-    const auto scene_backend = build_scene_backend(compute_backend, test_device(), gpu_scene);
+    const auto scene_backend = compute_backend->build(test_device(), gpu_scene);
     const auto make_renderer = [&] {
         return Renderer(test_device(), *scene_backend, settings().estimator, make_parameters(scene, settings()), {},
                         two_rows_of_blocks);

@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(, LiveVerdictOf, testing::ValuesIn(all_chapters), own_e
 void LiveVerdictOf::expect_agreement(uint32_t seeds) {
     const Scene scene = load_shipped_scene("cornell_box.json");
     const GpuScene gpu_scene(test_device(), scene);
-    const auto scene_backend = build_scene_backend(compute_backend, test_device(), gpu_scene);
+    const auto scene_backend = compute_backend->build(test_device(), gpu_scene);
     // Bounces find the light by chance: direct light is enough.
     const uint32_t max_path_length = samples_lights(GetParam()) ? 6 : 1;
     RenderParameters parameters = parameters_for(scene, max_path_length, 1);

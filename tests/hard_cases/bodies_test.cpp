@@ -49,7 +49,7 @@ class BodiesOnAllBackends : public testing::Test {
     // On every backend that the device has.
     static void expect_mean(Scene scene, double expected, double tolerance = 0) {
         for (const Backend backend : all_backends) {
-            if (!test_device().description().supports(backend)) continue;
+            if (!is_supported(backend, test_device().description())) continue;
             SCOPED_TRACE(to_string(backend));
             const FilmImage film = render(scene, settings(backend));
             EXPECT_EQ(film.invalid_samples(), 0u);
@@ -82,10 +82,11 @@ TEST_F(BodiesOnAllBackends, PathsKnowTheirMedium) {
                              R"(, "fog": {"extinction": 0.05, "albedo": 0.9}, "background": {"radiance": 1},
                                 "camera": {"position": [6, 5, 9], "target": [0, 1, 0]})");
     for (const Backend backend : all_backends) {
-        if (!test_device().description().supports(backend)) continue;
+        if (!is_supported(backend, test_device().description())) continue;
         SCOPED_TRACE(to_string(backend));
-        const GpuScene gpu_scene(test_device(), scene, Strategy::both, true, true, true);
-        const auto scene_backend = build_scene_backend(backend, test_device(), gpu_scene);
+        const GpuScene gpu_scene(test_device(), scene, Strategy::both,
+                                 {.light_probe_sampling = true, .microfacets = true, .media = true});
+        const auto scene_backend = backend->build(test_device(), gpu_scene);
         Estimator estimator = probe("path_medium");
         estimator.observed = project_folder() / "chapters/13_media/path_trace.glsl";
         estimator.defines = {"SECOND_MESH " + std::to_string(scene.meshes[1].first_triangle) + "u"};

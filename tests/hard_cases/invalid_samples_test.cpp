@@ -20,7 +20,7 @@ class InvalidSamples : public OnEachBackend {
         const Device& device = test_device();
         const Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}, {1, 2, 3}));
         const GpuScene gpu_scene(device, scene);
-        const auto scene_backend = build_scene_backend(GetParam(), device, gpu_scene);
+        const auto scene_backend = GetParam()->build(device, gpu_scene);
         const RenderParameters parameters = make_parameters(scene, {.width = width, .height = height, .first_sample = first});
         // The estimator starts after the two numbers for the position in the pixel.
         const RandomState state =

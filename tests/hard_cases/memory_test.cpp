@@ -88,7 +88,7 @@ TEST(Memory, RefusesTheTreeBeforeItIsBuilt) {
     if (fitting * scene.triangles.size() > max_triangle_count) GTEST_SKIP() << "the device holds any tree";
     for (size_t i = 0; i <= fitting; ++i) place(scene, mat4x3(1));
     const GpuScene gpu_scene(test_device(), scene);
-    const std::string text = refusal([&] { build_scene_backend(compute_backend, test_device(), gpu_scene); });
+    const std::string text = refusal([&] { compute_backend->build(test_device(), gpu_scene); });
     // Once the tree is built, buffers are refused without their own name.
     EXPECT_NE(text.find("triangles of all instances, a buffer of "), std::string::npos) << text;
 }

@@ -26,8 +26,8 @@ struct TracedImage {
 class BackendScene {
   public:
     BackendScene(Backend backend, const Scene& scene, bool samples_probe = false)
-        : gpu_scene_(test_device(), scene, Strategy::both, samples_probe),
-          scene_backend_(build_scene_backend(backend, test_device(), gpu_scene_)) {}
+        : gpu_scene_(test_device(), scene, Strategy::both, {.light_probe_sampling = samples_probe}),
+          scene_backend_(backend->build(test_device(), gpu_scene_)) {}
 
     // One sample per pixel.
     TracedImage render(const RenderSettings& settings) const {
@@ -127,9 +127,9 @@ Estimators with_every_hit(Estimators all) {
 class Parity : public testing::TestWithParam<Backend> {
   protected:
     void SetUp() override {
-        if (test_device().description().supports(GetParam())) return;
+        if (is_supported(GetParam(), test_device().description())) return;
         if (must_have_all_backends()) FAIL() << "this driver is known to have all backends";
-        GTEST_SKIP() << "the device lacks " << test_device().description().missing.at(GetParam()).front();
+        GTEST_SKIP() << "the device lacks " << missing_for(GetParam(), test_device().description()).front();
     }
 
     void expect_same(const std::string& what, const Scene& scene, uint32_t size, const Limits& limits) {

@@ -61,7 +61,7 @@ class FeatureCode : public testing::TestWithParam<std::string> {
         const RenderSettings settings{.strategy = samples_lights(GetParam()) ? Strategy::both : Strategy::bounces,
                                       .estimator = chapter_estimator(GetParam())};
         const GpuScene gpu_scene = make_gpu_scene(scene, settings);
-        const auto scene_backend = build_scene_backend(backend, test_device(), gpu_scene);
+        const auto scene_backend = backend->build(test_device(), gpu_scene);
         std::set<std::string> functions;
         for (const auto& [name, needs] : needs_of_features()) functions.insert(needs.functions.begin(), needs.functions.end());
         functions.insert("choose_light_by_tree");
@@ -109,17 +109,18 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
             continue;
         if (feature.name == "area lights" && !samples_lights(GetParam())) needs = {};
         if (feature.name == "area lights" && !weights_lights(GetParam())) needs.material_members = {};
-        if (feature.name == "area lights" && load_chapter(GetParam()).light_tree) {
+        if (feature.name == "area lights" && load_chapter(GetParam()).handles.light_tree) {
             needs.bindings.insert({BINDING_LIGHT_NODES, BINDING_LIGHT_LEAVES, BINDING_LIGHT_PLACES});
             needs.functions = {"choose_light_by_tree"};
         }
-        if (feature.name == "light probe" && !load_chapter(GetParam()).light_probe_sampling) {
+        if (feature.name == "light probe" && !load_chapter(GetParam()).handles.light_probe_sampling) {
             needs.bindings.erase(BINDING_PROBE_CELLS);
             needs.functions.erase("choose_probe_cell");
         }
-        const bool has_no_use = (feature.name == "microfacets" && !handles_microfacets(GetParam())) ||
-                                (feature.name == "lens" && !load_chapter(GetParam()).lens) ||
-                                ((feature.name == "media" || feature.name == "densities") && !load_chapter(GetParam()).media);
+        const bool has_no_use =
+            (feature.name == "microfacets" && !handles_microfacets(GetParam())) ||
+            (feature.name == "lens" && !load_chapter(GetParam()).handles.lens) ||
+            ((feature.name == "media" || feature.name == "densities") && !load_chapter(GetParam()).handles.media);
         if (has_no_use) needs = {};
         Scene scene = bare_scene();
         feature.add(scene);
@@ -143,7 +144,7 @@ void FeatureCode::expect_each_feature_alone(Backend backend) const {
 TEST_P(FeatureCode, OfABareSceneIsOfNoFeature) {
     for (const Backend backend : {pipeline_backend, query_backend, compute_backend}) {
         SCOPED_TRACE(to_string(backend));
-        if (test_device().description().supports(backend)) expect_no_feature_in_bare_scene(backend);
+        if (is_supported(backend, test_device().description())) expect_no_feature_in_bare_scene(backend);
     }
 }
 
@@ -154,7 +155,7 @@ TEST_P(FeatureCode, HasWhatEachFeatureNeedsAndNothingElse) { expect_each_feature
 TEST_P(FeatureCode, OfTheDriversBackendsHasWhatEachFeatureNeedsAndNothingElse_all) {
     for (const Backend backend : {pipeline_backend, query_backend}) {
         SCOPED_TRACE(to_string(backend));
-        if (test_device().description().supports(backend)) expect_each_feature_alone(backend);
+        if (is_supported(backend, test_device().description())) expect_each_feature_alone(backend);
     }
 }
 

@@ -19,7 +19,7 @@ struct LookAtPoint {
     LookAtPoint(Scene scene_to_use, const RenderSettings& settings)
         : scene(std::move(scene_to_use)),
           gpu_scene(test_device(), scene),
-          scene_backend(build_scene_backend(compute_backend, test_device(), gpu_scene)),
+          scene_backend(compute_backend->build(test_device(), gpu_scene)),
           parameters(make_parameters(scene, settings)),
           view(test_device(), *scene_backend, settings.estimator) {
         PathRecorder recorder(test_device(), *scene_backend, settings.estimator, parameters.image_size);

@@ -11,7 +11,7 @@
 #include "support/render.h"
 #include "support/scenes.h"
 #include "support/temporary_folder.h"
-#include "tracing/backends.h"
+#include "tracing/vulkan_backends.h"
 
 namespace lab {
 namespace {
@@ -26,8 +26,9 @@ struct Recorded {
 
 // Paths of `count` pixels spread over the image, with varying sample indices.
 std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& settings, uint32_t count) {
-    const GpuScene gpu_scene(test_device(), scene, settings.strategy, scene.light_probe.has_value(), false, !scene.media.empty());
-    const auto scene_backend = build_scene_backend(settings.backend, test_device(), gpu_scene);
+    const GpuScene gpu_scene(test_device(), scene, settings.strategy,
+                             {.light_probe_sampling = scene.light_probe.has_value(), .media = !scene.media.empty()});
+    const auto scene_backend = settings.backend->build(test_device(), gpu_scene);
     PathRecorder recorder(test_device(), *scene_backend, settings.estimator, {settings.width, settings.height});
     std::vector<Recorded> paths;
     for (uint32_t i = 0; i < count; ++i) {
@@ -258,7 +259,7 @@ TEST(PathRecorder, RecordsTheSameOnEveryBackend) {
     RenderSettings settings = settings_for(chapter_named("next_event_estimation"));
     const auto expected = record_paths(scene, settings, 20);
     for (const Backend backend : all_backends) {
-        if (!test_device().description().supports(backend)) continue;
+        if (!is_supported(backend, test_device().description())) continue;
         settings.backend = backend;
         const auto paths = record_paths(scene, settings, 20);
         for (size_t i = 0; i < paths.size(); ++i) {

@@ -29,9 +29,9 @@ bool weights_lights(const std::string& chapter) {
     return std::ranges::count(load_chapter(chapter).strategies, Strategy::both) > 0;
 }
 
-bool handles_dielectrics(const std::string& chapter) { return load_chapter(chapter).dielectrics; }
+bool handles_dielectrics(const std::string& chapter) { return load_chapter(chapter).handles.dielectrics; }
 
-bool handles_microfacets(const std::string& chapter) { return load_chapter(chapter).microfacets; }
+bool handles_microfacets(const std::string& chapter) { return load_chapter(chapter).handles.microfacets; }
 
 bool has_option(const std::string& chapter, const std::string& option) {
     return std::ranges::count(load_chapter(chapter).options, option, &ChapterOption::name) > 0;

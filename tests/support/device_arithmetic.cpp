@@ -185,7 +185,7 @@ struct HitPoints {
 
 HitPoints trace(const Device& device, const Scene& scene, Backend backend) {
     const GpuScene gpu_scene(device, scene);
-    const auto scene_backend = build_scene_backend(backend, device, gpu_scene);
+    const auto scene_backend = backend->build(device, gpu_scene);
     HitPoints points;
     std::vector<vec3>* const results[] = {&points.directions, &points.positions, &points.ids};
     for (uint32_t which = 0; which < std::size(results); ++which) {
@@ -253,7 +253,7 @@ std::vector<HitPointError> measure_hit_points(const Device& device) {
     std::vector<HitPointError> errors;
     for (const Backend backend : all_backends)
         for (const auto& [name, scene] : scenes)
-            if (device.description().supports(backend)) errors.push_back(hit_point_error(device, name, scene, backend));
+            if (is_supported(backend, device.description())) errors.push_back(hit_point_error(device, name, scene, backend));
     return errors;
 }
 

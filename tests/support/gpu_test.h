@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "gpu/compute_kernel.h"
 
 namespace lab {

@@ -28,7 +28,7 @@ Estimator view_estimator(const std::string& view, const std::string& chapter) {
 
 Backend fastest_backend() {
     const DeviceDescription& device = test_device().description();
-    return device.kind == "CPU" && device.supports(native_backend) ? native_backend : compute_backend;
+    return device.kind == "CPU" && is_supported(native_backend, device) ? native_backend : compute_backend;
 }
 
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {
@@ -54,17 +54,15 @@ Chapter chapter_of(const Estimator& estimator) {
 
 }  // namespace
 
-bool samples_probe(const Estimator& estimator) { return chapter_of(estimator).light_probe_sampling; }
+bool samples_probe(const Estimator& estimator) { return chapter_of(estimator).handles.light_probe_sampling; }
 
 GpuScene make_gpu_scene(const Scene& scene, const RenderSettings& settings) {
-    const Chapter chapter = chapter_of(settings.estimator);
-    return {test_device(),       scene,         settings.strategy, chapter.light_probe_sampling,
-            chapter.microfacets, chapter.media, chapter.light_tree};
+    return {test_device(), scene, settings.strategy, chapter_of(settings.estimator).handles};
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, const RenderSettings& settings)
     : gpu_scene_(make_gpu_scene(scene, settings)),
-      scene_backend_(build_scene_backend(settings.backend, test_device(), gpu_scene_)),
+      scene_backend_(settings.backend->build(test_device(), gpu_scene_)),
       renderer_(test_device(), *scene_backend_, settings.estimator, make_parameters(scene, settings), {},
                 settings.max_film_window) {}
 
@@ -133,7 +131,7 @@ std::vector<double> pixel_means(const FilmImage& film, int channel) {
 }
 
 void OnEachBackend::SetUp() {
-    if (!test_device().description().supports(GetParam())) GTEST_SKIP() << "the device lacks this backend";
+    if (!is_supported(GetParam(), test_device().description())) GTEST_SKIP() << "the device lacks this backend";
 }
 
 std::string backend_name(const testing::TestParamInfo<Backend>& info) {

@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "rendering/renderer.h"
 #include "scene/scene.h"
 #include "support/chapters.h"

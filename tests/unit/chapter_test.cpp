@@ -33,11 +33,11 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         const auto has_strategy = [&](Strategy strategy) { return std::ranges::count(chapter.strategies, strategy) > 0; };
         EXPECT_EQ(has_strategy(Strategy::light), mentions("STRATEGY_BOUNCES")) << name;
         EXPECT_EQ(has_strategy(Strategy::both), mentions("STRATEGY_LIGHT")) << name;
-        EXPECT_EQ(chapter.light_probe_sampling, mentions("choose_probe_cell")) << name;
-        EXPECT_EQ(chapter.dielectrics, mentions("is_dielectric")) << name;
-        EXPECT_EQ(chapter.microfacets, mentions("microfacets[")) << name;
-        EXPECT_EQ(chapter.lens, mentions("aperture_radius")) << name;
-        EXPECT_EQ(chapter.media, mentions("get_medium(")) << name;
+        EXPECT_EQ(chapter.handles.light_probe_sampling, mentions("choose_probe_cell")) << name;
+        EXPECT_EQ(chapter.handles.dielectrics, mentions("is_dielectric")) << name;
+        EXPECT_EQ(chapter.handles.microfacets, mentions("microfacets[")) << name;
+        EXPECT_EQ(chapter.handles.lens, mentions("aperture_radius")) << name;
+        EXPECT_EQ(chapter.handles.media, mentions("get_medium(")) << name;
         EXPECT_EQ(chapter.low_discrepancy, mentions("get_random_words(inout uvec2 seed) {")) << name;
         for (const ChapterChoice& choice : chapter.choices) {
             EXPECT_TRUE(mentions("#define " + choice.define() + " " + choice.values.front().second))

@@ -194,7 +194,7 @@ TEST(NativeLanes, WhatTheCompilerRefusesRunsOneByOneAndSaysWhy) {
     const TestFolder folder;
     const auto compiler = folder.write(
         "compiler",
-        "#!/bin/sh\nif grep -q lane_ \"$1\"; then echo test.glsl:7:1: error: no vectors; exit 1; fi\nexec c++ \"$@\"\n");
+        "#!/bin/sh\nif grep -q native/lanes \"$1\"; then echo test.glsl:7:1: error: no vectors; exit 1; fi\nexec c++ \"$@\"\n");
     std::filesystem::permissions(compiler, std::filesystem::perms::owner_all);
     setenv("CXX", compiler.c_str(), 1);
     EXPECT_EQ(result_and_reason("results[i] = 5u;"),

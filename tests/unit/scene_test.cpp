@@ -320,12 +320,12 @@ TEST_F(SceneFile, FeaturesAreWhatTheSceneNeeds) {
                  "newmtl all\nKd 0.5 0.5 0.5\nKs 0.1 0.1 0.1\nNs 10\nd 0\nNi 1.5\nTf 0.5 1 1\nmap_Kd b.png\n");
     write_png(folder / "b.png", {1, 1, {1, 2, 3, 255}});
     folder.write("b.obj", "mtllib b.mtl\nusemtl all\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n");
-    const std::vector<std::string> expected = {"FEATURE_VERTEX_NORMALS", "FEATURE_TEXTURES",    "FEATURE_SKY",
-                                               "FEATURE_SPECULAR",       "FEATURE_DIELECTRICS", "FEATURE_ABSORPTION",
+    const std::vector<std::string> expected = {"FEATURE_SPECULAR",  "FEATURE_VERTEX_NORMALS", "FEATURE_TEXTURES",
+                                               "FEATURE_SKY",       "FEATURE_DIELECTRICS",    "FEATURE_ABSORPTION",
                                                "FEATURE_TRANSFORMS"};
     const std::string json = R"({"meshes": [{"file": "b.obj", "scale": 2}], "background": {"radiance": 1}})";
     EXPECT_EQ(features_of(load(json, true)).defines(), expected);
-    EXPECT_FALSE(features_of(load(json)).specular);
+    EXPECT_FALSE(features_of(load(json)).specular());
 }
 
 TEST(Camera, SpansTheImagePlane) {

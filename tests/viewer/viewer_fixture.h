@@ -9,7 +9,7 @@
 #include <fstream>
 #include <functional>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "files/project_folder.h"
 #include "support/chapters.h"
 #include "support/temporary_folder.h"
@@ -48,6 +48,7 @@ class ViewerTest : public testing::Test {
         options.scene.file = scenes / "cornell_box.json";
         options.image.width = 48;
         options.image.height = 40;
+        options.run.backends = all_backends;
         options.run.backend = "compute";
         options.samples.chapter_values.resize(chapter_.options.size());
         return options;
@@ -69,8 +70,7 @@ class ViewerTest : public testing::Test {
                 DeviceOptions{.choice = choice,
                               .validation = true,
                               .instance_extensions = window_->instance_extensions(),
-                              .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); },
-                              .backends = all_backends});
+                              .make_surface = [&](VkInstance instance) { return window_->make_surface(instance); }});
             if (*device_->surface()) break;
         }
         ASSERT_TRUE(*device_->surface());

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "error.h"
 #include "platform.h"
 #include "rendering/render_job.h"
@@ -67,8 +67,7 @@ void dump(const std::string& file, const Chapter& chapter, const Options& option
     const std::shared_ptr<const Scene> loaded = load_scene_for(chapter, options.scene);
     const Scene& scene = *loaded;
     const RenderParameters parameters = picture(chapter, scene, options);
-    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.light_probe_sampling, chapter.microfacets,
-                             chapter.media, chapter.light_tree);
+    const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.handles);
     const Bvh bvh = build_bvh(world_triangles(scene));
 
     Dump dump(file);

@@ -6,6 +6,7 @@ import re
 from book.code_blocks import fill
 from docs.bug_blocks import bug_block
 from docs.shader_table import shader_tables
+from material_keywords import keyword_table
 from project import ROOT, Parser, UserError
 from report.studies import examples
 
@@ -31,7 +32,7 @@ def write_pages(pages, text_of, is_check, command):
 
 
 def table_named(name):
-    tables = {"shader": shader_tables, **examples()}
+    tables = {"shader": shader_tables, "keywords of a material": keyword_table, **examples()}
     if name.startswith("bug "):
         return bug_block(name.removeprefix("bug "))
     if name not in tables:

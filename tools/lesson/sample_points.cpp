@@ -3,7 +3,7 @@
 #include <iostream>
 #include <map>
 
-#include "app/backends.h"
+#include "app/all_backends.h"
 #include "error.h"
 #include "files/project_folder.h"
 #include "gpu/compute_kernel.h"
@@ -37,7 +37,7 @@ std::vector<float> sample(const std::string& define, const std::string& chapter,
     const ShaderSource source{.file = project_folder() / "tools/lesson/sample_points.comp",
                               .defines = {define, "COLUMNS " + std::to_string(columns)},
                               .named_includes = named_includes(estimator_of(load_chapter(chapter)))};
-    const Device device({.choice = device_name, .backends = all_backends});
+    const Device device({.choice = device_name});
     // A table of one triangle, the stub's second one, that always stands for itself.
     const Inputs inputs{seed_key(seed), 1, samples, {0, 1, 0xffffffffu, 0, 1.0f}};
     std::vector<float> points(size_t{count} * columns);

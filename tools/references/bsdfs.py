@@ -1,8 +1,10 @@
-"""Those of our materials that Mitsuba 3 lacks, as Mitsuba BSDFs. Import this module when a variant is chosen: their base class exists
-only then."""
+"""Our materials as Mitsuba BSDFs, and those of them that Mitsuba 3 lacks. Import this module when a variant is chosen: their base class
+exists only then."""
 import drjit as dr
 import mitsuba as mi
 import numpy as np
+
+from references.mitsuba_scene import colour, load_image
 
 
 class ByEvalPdf(mi.BSDF):
@@ -197,3 +199,37 @@ mi.register_bsdf("rough_glass", RoughGlass)
 mi.register_bsdf("rough_opaque", RoughOpaque)
 mi.register_bsdf("interpolated_normals", InterpolatedNormals)
 mi.register_bsdf("phong_lobe", Phong)
+
+
+def make_diffuse_reflectance(material):
+    if material.texture is None:
+        return colour(material.diffuse_albedo)
+    pixels = (material.diffuse_albedo * load_image(material.texture)).astype(np.float32)
+    return {"type": "bitmap", "data": mi.TensorXf(np.ascontiguousarray(pixels)), "raw": True, "format": "variant",
+            "filter_type": "bilinear", "wrap_mode": "repeat"}
+
+
+def make_bsdf(surface, own_normals):
+    material = surface.material
+    if surface.is_open:
+        return {"type": "null"}
+    if material.roughness > 0 and material.refractive_index > 0:
+        bsdf = {"type": "rough_glass", "alpha": material.roughness,
+                "nested": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
+                           "int_ior": material.refractive_index, "ext_ior": 1.0}}
+    elif material.roughness > 0:
+        bsdf = {"type": "twosided", "nested": {
+            "type": "rough_opaque", "diffuse": make_diffuse_reflectance(material), "metalness": material.metalness,
+            "index": material.coat_index, "alpha": material.roughness,
+            "facets": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": material.roughness}}}
+    elif material.refractive_index > 0:
+        bsdf = {"type": "dielectric", "int_ior": material.refractive_index, "ext_ior": 1.0}
+    elif material.specular_albedo.any():
+        bsdf = {"type": "twosided", "nested": {
+            "type": "phong_lobe", "diffuse": make_diffuse_reflectance(material),
+            "specular": colour(material.specular_albedo), "exponent": material.specular_exponent}}
+    else:
+        bsdf = {"type": "twosided",
+                "nested": {"type": "diffuse", "reflectance": make_diffuse_reflectance(material)}}
+    is_left_alone = surface.normals is None or own_normals
+    return bsdf if is_left_alone else {"type": "interpolated_normals", "nested": bsdf}

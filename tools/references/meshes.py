@@ -1,32 +1,33 @@
 """Reads the .obj and .mtl files of chapters, for tools that pass them to other renderers: see scenes.py."""
 import sys
-from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
+from material_keywords import KEYWORDS
 
-@dataclass(eq=False)  # compared and hashed by identity: two files may use the same name
+
 class Material:
-    """Reflectances are linear and sum to at most 1; absorption is -ln Tf per unit of world length."""
-    name: str
-    diffuse: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    emission: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    specular: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    specular_exponent: float = 1.0
-    refractive_index: float = 0.0  # 0 for an opaque surface
-    absorption: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    texture: Path | None = None
-    roughness: float = 0.0  # alpha of the GGX distribution; 0 without microfacets
-    metalness: float = 0.0
-    coat_index: float = 1.5  # for an opaque surface with microfacets
+    """Has the members of Material in shaders/interface.h. Albedos are linear and sum to at most 1. Compared and hashed by identity: two files
+    may use the same name."""
+    def __init__(self, name, **members):
+        self.name = name
+        for keyword in KEYWORDS:
+            if keyword.member:
+                setattr(self, keyword.member, np.zeros(3) if keyword.count == 3 else keyword.default)
+        self.refractive_index = 0.0  # 0 for an opaque surface
+        self.absorption = np.zeros(3)  # -ln Tf per unit of world length
+        self.texture = None  # its path
+        self.roughness = 0.0  # alpha of the GGX distribution; 0 without microfacets
+        self.metalness = 0.0
+        self.coat_index = 1.5  # for an opaque surface with microfacets
+        vars(self).update(members)
 
     def equals(self, other):
         """Whether both look the same, whatever their names."""
         return all(np.array_equal(value, getattr(other, key)) for key, value in vars(self).items() if key != "name")
 
 
-NUMBERS = {"Kd": 3, "Ke": 3, "Ks": 3, "Tf": 3, "Kt": 3, "Ns": 1, "Ni": 1, "d": 1, "Tr": 1, "Pr": 1, "Pm": 1}
+NUMBERS = {keyword.name: keyword.count for keyword in KEYWORDS if keyword.count}
 
 
 def to_floats(words, count):
@@ -60,12 +61,11 @@ def read_mtl(path, texture_folder, files):
 
     materials = {}
     for stated in statements:
-        material = Material(stated["newmtl"])
-        material.emission = stated.get("Ke", material.emission)
-        material.specular = stated.get("Ks", material.specular)
-        material.specular_exponent = float(stated.get("Ns", [1])[0])
-        material.diffuse = stated.get("Kd", np.ones(3) if "map_Kd" in stated else material.diffuse)
+        members = {keyword.member: stated[keyword.name] if keyword.count == 3 else float(stated[keyword.name][0])
+                   for keyword in KEYWORDS if keyword.member and keyword.name in stated}
+        material = Material(stated["newmtl"], **members)
         if "map_Kd" in stated:
+            material.diffuse_albedo = stated.get("Kd", np.ones(3))
             material.texture = texture_folder / stated["map_Kd"].replace("\\", "/")
         opacity = stated["d"][0] if "d" in stated else 1 - stated.get("Tr", [0])[0]
         if opacity < 1:
@@ -76,7 +76,7 @@ def read_mtl(path, texture_folder, files):
             material.roughness = max(float(stated["Pr"][0]), 0.01) ** 2
             material.metalness = float(stated.get("Pm", [0])[0])
             material.coat_index = float(stated.get("Ni", [1.5])[0])
-            material.specular = np.zeros(3)
+            material.specular_albedo = np.zeros(3)
         materials.setdefault(material.name, material)
     return materials
 
@@ -126,7 +126,7 @@ class ObjFile:
                 counts = (len(positions), len(texture_coordinates), len(normals))
                 face = [self._corner(word, counts) for word in words[1:]]
                 if material is None and grey is None:
-                    grey = only or Material("", diffuse=np.full(3, 0.5))
+                    grey = only or Material("", diffuse_albedo=np.full(3, 0.5))
                 for triangle in triangulate(np.array([positions[corner[0]] for corner in face])):
                     corners.append([face[i] for i in triangle])
                     self.materials.append(material or grey)

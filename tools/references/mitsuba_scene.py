@@ -30,40 +30,6 @@ def colour(values):
     return {"type": "rgb", "value": [float(value) for value in values]}
 
 
-def make_diffuse_reflectance(material):
-    if material.texture is None:
-        return colour(material.diffuse)
-    pixels = (material.diffuse * load_image(material.texture)).astype(np.float32)
-    return {"type": "bitmap", "data": mi.TensorXf(np.ascontiguousarray(pixels)), "raw": True, "format": "variant",
-            "filter_type": "bilinear", "wrap_mode": "repeat"}
-
-
-def make_bsdf(surface, own_normals):
-    material = surface.material
-    if surface.is_open:
-        return {"type": "null"}
-    if material.roughness > 0 and material.refractive_index > 0:
-        bsdf = {"type": "rough_glass", "alpha": material.roughness,
-                "nested": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
-                           "int_ior": material.refractive_index, "ext_ior": 1.0}}
-    elif material.roughness > 0:
-        bsdf = {"type": "twosided", "nested": {
-            "type": "rough_opaque", "diffuse": make_diffuse_reflectance(material), "metalness": material.metalness,
-            "index": material.coat_index, "alpha": material.roughness,
-            "facets": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": material.roughness}}}
-    elif material.refractive_index > 0:
-        bsdf = {"type": "dielectric", "int_ior": material.refractive_index, "ext_ior": 1.0}
-    elif material.specular.any():
-        bsdf = {"type": "twosided", "nested": {
-            "type": "phong_lobe", "diffuse": make_diffuse_reflectance(material),
-            "specular": colour(material.specular), "exponent": material.specular_exponent}}
-    else:
-        bsdf = {"type": "twosided",
-                "nested": {"type": "diffuse", "reflectance": make_diffuse_reflectance(material)}}
-    is_left_alone = surface.normals is None or own_normals
-    return bsdf if is_left_alone else {"type": "interpolated_normals", "nested": bsdf}
-
-
 # ---------------------------------------------------------------------------------------------- scenes
 def unit_length(scene):
     """The length of our unit in Mitsuba's scene. Mitsuba moves a ray's origin off the surface by 1e-4 (1 + its largest
@@ -73,8 +39,10 @@ def unit_length(scene):
 
 def make_mesh(surface, unit, own_normals, media):
     """A mesh without shared vertices. It has vertex normals only if own_normals asks for Mitsuba's interpolation."""
+    from references import bsdfs  # which needs the variant
+
     properties = mi.Properties()
-    properties["mesh_bsdf"] = mi.load_dict(make_bsdf(surface, own_normals))
+    properties["mesh_bsdf"] = mi.load_dict(bsdfs.make_bsdf(surface, own_normals))
     material = surface.material
     if material.emission.any():
         properties["emitter"] = mi.load_dict({"type": "area", "radiance": colour(material.emission)})
@@ -193,7 +161,6 @@ def run_mitsuba(variant, work):
         if variant == "llvm_ad_rgb" and dr.detail.llvm_version()[0] < 19:  # Mitsuba would abort
             raise UserError("LLVM is older than 19: install libllvm19 and let DRJIT_LIBLLVM_PATH name its library")
         mi.set_log_level(mi.LogLevel.Error)
-        import references.bsdfs  # noqa: F401 (registers them; their base class needs the variant)
         work()
     except (RuntimeError, ImportError) as error:
         while error.__cause__:  # the innermost one says what is wrong

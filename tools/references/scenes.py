@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from material_keywords import KEYWORDS
 from project import UserError
 from references.bodies import Bodies, Body, connected_parts
 from references.lamps import resolve_lamps
@@ -66,12 +67,13 @@ class Scene:
 
 
 def limit_reflectance(material, specular):
-    """Ks counts only on request; both are divided by the largest channel of their sum if that exceeds 1."""
+    """Ks counts only on request; albedos are divided by the largest channel of their sum if that exceeds 1."""
     if not specular:
-        material.specular = np.zeros(3)
-    largest = max(1, *(material.diffuse + material.specular))
-    material.diffuse = material.diffuse / largest
-    material.specular = material.specular / largest
+        material.specular_albedo = np.zeros(3)
+    members = [keyword.member for keyword in KEYWORDS if keyword.is_albedo]
+    largest = max(1, *sum(getattr(material, member) for member in members))
+    for member in members:
+        setattr(material, member, getattr(material, member) / largest)
 
 
 OPEN = Material("open boundary")  # whose own materials do not matter

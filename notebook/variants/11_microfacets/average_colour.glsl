@@ -1,9 +1,5 @@
 // Facets have another probability, by the average of the channels; the coin comes after the point; GLSL reflects and refracts.
-#define get_bsdf_density get_density_without_facets
-#define sample_bsdf sample_without_facets
-#include "07_multiple_importance_sampling/sample_bsdf.glsl"
-#undef get_bsdf_density
-#undef sample_bsdf
+#include "07_multiple_importance_sampling/sample_lobes.glsl"
 #include "sample_normal.glsl"
 #ifdef FEATURE_MICROFACETS
 
@@ -42,9 +38,9 @@ BsdfSample sample_with_facets(ShadingData s, inout uvec2 seed) {
     }
     float cos_k = dot(s.normal, toward), density = get_density_with_facets(s, toward);
     bool is_lost = goes_through != (cos_k < 0.0) || !is_above_surface(s, toward);
-    if (is_lost || !(density > 0.0)) return BsdfSample(s.normal, vec3(0.0), 0.0, false, 1.0);
+    if (is_lost || !(density > 0.0)) return BsdfSample(s.normal, vec3(0.0), 0.0, 1.0);
     float scale = goes_through ? 1.0 / (s.relative_index * s.relative_index) : 1.0;
-    return BsdfSample(toward, cos_k / scale * get_brdf(s, toward) / density, density, false, scale);
+    return BsdfSample(toward, cos_k / scale * get_brdf(s, toward) / density, density, scale);
 }
 #endif
 
@@ -52,12 +48,13 @@ float get_bsdf_density(ShadingData s, vec3 in_direction) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return get_density_with_facets(s, in_direction);
 #endif
-    return get_density_without_facets(s, in_direction);
+    return get_lobes_density(s, in_direction);
 }
 
 BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
 #ifdef FEATURE_MICROFACETS
     if (s.roughness > 0.0) return sample_with_facets(s, seed);
 #endif
-    return sample_without_facets(s, seed);
+    if (s.is_dielectric) return sample_dielectric(s, seed);
+    return sample_lobes(s, seed);
 }

@@ -7,6 +7,7 @@
 #include "world/frame.glsl"
 #include "world/ray.glsl"
 #include "world/shading_data.glsl"
+#include "engine/trace_ray/world_triangles.h"
 
 // As common/tracing/bvh.h has it: three rows a triangle, for x, y and z of the corners; the first two hold instance and triangle.
 struct BvhRow {

@@ -21,7 +21,6 @@ BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
 
     BsdfSample result;
     result.density = 0.0;
-    result.is_single = true;
 
     // refract() returns 0 for total internal reflection
     float F = 1.0;

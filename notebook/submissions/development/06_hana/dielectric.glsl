@@ -20,7 +20,6 @@ BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
     // The probability of either direction is its share of the light, so they cancel and the weight is 1.
     BsdfSample result;
     result.density = 0.0;
-    result.is_single = true;
     if (reflects) {
         result.direction = 2.0 * c * s.normal - s.out_direction;
         result.weight = vec3(dot(s.geometric_normal, result.direction) > 0.0);

@@ -25,5 +25,5 @@ BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
     }
     // A direction on opposite sides of the two normals carries nothing.
     vec3 weight = vec3(is_reflected == (dot(s.geometric_normal, omega) > 0.0));
-    return BsdfSample(omega, weight, 0.0, true, is_reflected ? 1.0 : 1.0 / (eta * eta));
+    return BsdfSample(omega, weight, 0.0, is_reflected ? 1.0 : 1.0 / (eta * eta));
 }

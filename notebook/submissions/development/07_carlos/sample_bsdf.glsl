@@ -31,7 +31,7 @@ BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
     wi = get_shading_space(s.normal) * sample_hemisphere(u);
 #endif
 
-    BsdfSample result = BsdfSample(wi, vec3(0.0), get_bsdf_density(s, wi), false, 1.0);
+    BsdfSample result = BsdfSample(wi, vec3(0.0), get_bsdf_density(s, wi), 1.0);
     if (is_above_surface(s, wi)) result.weight = get_brdf(s, wi) * (dot(s.normal, wi) / result.density);
     return result;
 }

@@ -29,8 +29,8 @@ BsdfSample sample_bsdf(ShadingData s, inout uvec2 seed) {
     w = get_shading_space(s.normal) * sample_hemisphere(get_random_numbers(seed));
     density = cosine_density(s, w);
 #endif
-    if (!is_above_surface(s, w)) return BsdfSample(w, vec3(0.0), density, false, 1.0);
+    if (!is_above_surface(s, w)) return BsdfSample(w, vec3(0.0), density, 1.0);
     // brdf times cosine over density
     vec3 weight = get_brdf(s, w) * dot(s.normal, w) / density;
-    return BsdfSample(w, weight, density, false, 1.0);
+    return BsdfSample(w, weight, density, 1.0);
 }

@@ -22,9 +22,9 @@ BsdfSample sample_dielectric(ShadingData s, inout uvec2 seed) {
     if (happens(F, seed)) {
         vec3 mirrored = reflect(-view, s.normal);
         bool is_valid = dot(s.geometric_normal, mirrored) > 0.0;
-        return BsdfSample(mirrored, vec3(is_valid ? 1.0 : 0.0), 0.0, true, 1.0);
+        return BsdfSample(mirrored, vec3(is_valid ? 1.0 : 0.0), 0.0, 1.0);
     }
     vec3 refracted = normalize(refract(-view, s.normal, 1.0 / eta));
     bool is_valid = dot(s.geometric_normal, refracted) <= 0.0;
-    return BsdfSample(refracted, vec3(is_valid ? 1.0 : 0.0), 0.0, true, 1.0 / (eta * eta));
+    return BsdfSample(refracted, vec3(is_valid ? 1.0 : 0.0), 0.0, 1.0 / (eta * eta));
 }

@@ -1,11 +1,12 @@
-#include "native/backend.h"
+#include "native/native_backend.h"
 
 #include "clock.h"
 #include "files/project_folder.h"
 #include "native/module.h"
 #include "platform.h"
-#include "tracing/backends.h"
+#include "shaders/engine/trace_ray/world_triangles.h"
 #include "tracing/bvh.h"
+#include "tracing/vulkan_backends.h"
 
 namespace lab {
 namespace {
@@ -114,8 +115,12 @@ class NativeTracer : public Tracer {
         if (is_interrupted()) return std::nullopt;
         return seconds_since(start);
     }
-    std::optional<PathsAtOnce> paths_at_once() const override {
-        return PathsAtOnce{code_.invocations_at_once, code_.why_one_by_one};
+    // A lane whose pixel is finished waits for its neighbours.
+    bool wants_samples_together() const override { return code_.invocations_at_once > 1; }
+    std::string note() const override {
+        const int count = code_.invocations_at_once;
+        return "each core      traces " + std::to_string(count) + (count == 1 ? " path" : " paths") + " at a time" +
+               (code_.why_one_by_one.empty() ? "" : ": " + code_.why_one_by_one);
     }
 
   private:
@@ -161,7 +166,8 @@ class NativeBackend : public SceneBackend {
     ShaderSource shader_with(const std::vector<std::string>& defines, const Estimator& estimator) const {
         ShaderSource source = shader_source("engine/render.comp", scene_, estimator);
         source.defines.insert(source.defines.end(), defines.begin(), defines.end());
-        source.defines.emplace_back("WORLD_TRIANGLES");
+        const auto shaders = std::filesystem::weakly_canonical(project_folder() / "shaders");
+        source.replacements[shaders / "world/surface_point.glsl"] = shaders / "engine/trace_ray/world_triangles.glsl";
         return source;
     }
 
@@ -194,7 +200,7 @@ bool suits(const Device& device, const Scene& scene) {
 
 const BackendRow native_row{.name = "native",
                             .may_refuse_shaders = true,
-                            .missing = find_missing,
+                            .further_needs = find_missing,
                             .details = native::ray_tracer_name,
                             .suits = suits,
                             .build = build};

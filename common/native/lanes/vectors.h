@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "native/packet.h"
+#include "native/lanes/packet.h"
 
 // In the code that calls them, vectors of such functions stay in registers.
 #define LAB_INLINE [[gnu::always_inline]] inline

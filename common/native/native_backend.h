@@ -1,6 +1,6 @@
 // The `native` backend: the shaders of `compute` as C++ on the CPU. Embree traces the rays where it is installed.
 #pragma once
-#include "gpu/backend.h"
+#include "tracing/backend.h"
 
 namespace lab {
 

@@ -1,9 +1,9 @@
-#include "native/lane_writer.h"
+#include "native/lanes/lane_writer.h"
 
 namespace lab::native {
 
 std::string LaneWriter::prologue() const {
-    return "#include \"native/lane_builtins.h\"\nnamespace lab__ = lab::native::lanes;\n";
+    return "#include \"native/lanes/builtins.h\"\nnamespace lab__ = lab::native::lanes;\n";
 }
 std::string LaneWriter::type_name(Id type, Id of) const {
     const bool is_structure = kind(type) == spv::OpTypeStruct;
@@ -133,7 +133,7 @@ void LaneWriter::branch(const Statement& statement) {
     if (!second.statements.empty()) out(" if (branch__.turns()) " + part(second, 1));
     out(" branch__.ends(); } ");
 }
-// A loop that lanes may leave one by one goes on until none is left.
+// A loop that lanes may leave one by one goes on until none is left. One that they leave together stays a loop of C++.
 void LaneWriter::loop(const Statement& statement) {
     const int jumps = jumps_;
     const bool is_varying = variance_.varies(statement);

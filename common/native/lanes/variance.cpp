@@ -1,4 +1,4 @@
-#include "native/variance.h"
+#include "native/lanes/variance.h"
 
 #include <spirv/unified1/GLSL.std.450.h>
 

@@ -1,7 +1,7 @@
 // The backends that Vulkan traces rays with, and what they share.
 #pragma once
 #include "gpu/compute_kernel.h"
-#include "tracing/tracer.h"
+#include "tracing/backend.h"
 
 namespace lab {
 

@@ -1,6 +1,6 @@
 // GLSL's functions for lanes, and what all translated shaders have there.
 #pragma once
-#include "native/lane_statements.h"
+#include "native/lanes/statements.h"
 
 namespace lab::native::lanes {
 

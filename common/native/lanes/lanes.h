@@ -1,11 +1,17 @@
-// Eight or sixteen invocations of a translated shader at once. A number that differs between them is a `Lanes`, a mask says which
-// ones execute a statement, and each reads memory at an index of its own. translator.h says what uses this; it needs AVX2.
+// Eight or sixteen invocations of a translated shader at once, a lane of the CPU's vectors for each. A number that differs
+// between them is a `Lanes`, and GLSL's operators work on it:
+//
+//     vec3 x = origin + t * direction;            // GLSL
+//     V<vec3> x = origin + t * direction;         // three vectors of eight floats, if origin, t or direction differs
+//     vec3 x = origin + t * direction;            // if none does: computed once, for all
+//
+// Comparisons give a Mask, which statements.h uses for branches and loops. Needs AVX2.
 #pragma once
 #include <algorithm>
 #include <cstring>
 
 #include "native/glsl.h"
-#include "native/vectors.h"
+#include "native/lanes/vectors.h"
 
 namespace lab::native {
 // Outside of lanes, so that functions of structures are not looked up there.
@@ -58,7 +64,8 @@ LAB_INLINE void for_each_lane(const Mask& mask, const F& f) {
     for (uint32_t bits = bits_of(mask); bits != 0; bits &= bits - 1) f(std::countr_zero(bits));
 }
 
-// Vectors and matrices of lanes.
+// Vectors and matrices of lanes: the x of all invocations side by side, then the y, so that adding two takes an instruction for
+// each component.
 template <int n, typename T>
 struct Vec;
 template <typename T>
@@ -115,7 +122,8 @@ inline constexpr bool is_varying = is_lanes<T>;
 template <int n, int m>
 inline constexpr bool is_varying<Mat<n, m>> = true;
 
-// V<T> is the type of a T that differs between lanes.
+// V<T> is the type of a T that differs between lanes: V<float> is Lanes<float>, V<vec3> is Vec<3, Lanes<float>>, and a structure
+// has a variant of which all members differ.
 template <typename T>
 struct VaryingOf {};
 template <typename T>
@@ -159,7 +167,7 @@ LAB_INLINE auto varying(const T& x) {
         return x;
 }
 
-// The number type that operands have in common.
+// The number type that operands have in common: int * Lanes<float> multiplies floats.
 template <typename T>
 struct ElementOf {
     using type = T;

@@ -1,5 +1,13 @@
 // Writes a program for several invocations at once: what differs between them has another type, and a mask, `active__`, says
 // which ones execute a statement. Where the mask stays the same for all, so does the C++.
+//
+// An early exit is the hard part. After
+//
+//     if (throughput == vec3(0.0)) return radiance;
+//
+// some lanes have left and others have not. The former keep their result in `result__` and are out of the mask for the rest of
+// the function. That rest stands in `if (any(active__)) { ... }`, which ends where the block ends: if all have left, none of it
+// runs.
 #pragma once
 #include "native/writer.h"
 
@@ -36,7 +44,7 @@ class LaneWriter : public Writer {
     std::string part(const Sequence& sequence, int depth);
 
     const Variance variance_;
-    int depth_ = 0;    // of branches around that only some lanes may take
+    int depth_ = 0;    // of branches around us that only some lanes may take
     int returns_ = 0;  // that some lanes do and others do not, so far in the function
     int jumps_ = 0;    // of that kind, so far in the loop or in the cases
     struct Open {      // a loop

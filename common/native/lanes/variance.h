@@ -1,4 +1,14 @@
-// Which values, variables and loops differ between lanes, invocations that run at once. Without lanes none does.
+// Which values, variables and loops differ between lanes. The rest is computed once for all of them, in ordinary C++.
+//
+// A value varies if one of those that it is computed from does; the first ones are the numbers of the invocation. A variable
+// varies if a varying value is stored in it, or any value where only some lanes come by:
+//
+//     bool is_lit = true;                        // the same for all,
+//     if (is_occluded(ray, 1.0)) is_lit = false; // but no longer: the ray varies, so some lanes keep `true`
+//
+// And a loop varies if some lanes leave it where others go on. What a loop's end stores reaches its start in the next turn, so
+// the walk over the program repeats until it finds nothing new. In chapter 1, RenderParameters and whatever only depends on them
+// stay single numbers.
 #pragma once
 #include "native/program.h"
 

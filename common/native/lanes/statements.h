@@ -1,6 +1,18 @@
 // What lanes execute: assignments, branches and loops under masks, and their way to memory.
+//
+// All lanes share one instruction stream, so they cannot part at a branch. They walk through both sides instead, and a mask says
+// whose variables may change. For
+//
+//     if (x < 0.0) y = -x; else y = 1.0;
+//
+// the lanes execute, where `active` is the mask of those that have come here,
+//
+//     Branch branch(active, x < 0.0f);                      // narrows `active` to lanes with x < 0
+//     if (branch.begins()) assign(active, y, -x);           // skipped if there is none
+//     if (branch.turns()) assign(active, y, 1.0f);          // the other ones
+//     branch.ends();                                        // all that have come here
 #pragma once
-#include "native/lanes.h"
+#include "native/lanes/lanes.h"
 
 namespace lab::native::lanes {
 
@@ -47,7 +59,7 @@ LAB_INLINE auto select(const Mask& mask, const A& a, const B& b) {
     }
 }
 
-// Statements change the mask of those that `active` execute.
+// Statements change the mask of those that `active` execute. Each gives back at its end what it took from it.
 struct Branch {
     Mask& active;
     Mask rest;
@@ -61,6 +73,9 @@ struct Branch {
     }
     LAB_INLINE void ends() { active = active | rest; }
 };
+// A loop turns until no lane is left in it. One that leaves (`break`) is out of `active` until the loop ends; one that skips the
+// rest of a turn (`continue`) waits for the next. So a path of three bounces beside one of thirty waits for it: lanes pay off
+// where neighbours do the same.
 struct Loop {
     Mask& active;
     Mask ended = false, waiting = false;
@@ -107,7 +122,9 @@ LAB_INLINE Mask is_one_of(const Lanes<uint>& selector, std::initializer_list<uin
     return result;
 }
 
-// Memory. Code runs only if some lane is active, so that arrays have a first element.
+// Memory: where the index is the same for all lanes, they read one place, and else each reads its own (a `gather`). Those that
+// are not active read nothing, since their index may be any number. Code runs only if some lane is active, so arrays have a first
+// element.
 template <typename T>
 inline constexpr int word_count = static_cast<int>(sizeof(T) / 4);
 template <typename T>

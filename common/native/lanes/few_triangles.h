@@ -3,7 +3,7 @@
 #include "native/embree.h"
 
 #ifdef LAB_FEW_TRIANGLES
-#include "native/vectors.h"
+#include "native/lanes/vectors.h"
 
 namespace lab::native {
 

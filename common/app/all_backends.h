@@ -1,7 +1,7 @@
 // The backends that the programs have. A new one is a row here, and its folder.
 #pragma once
-#include "native/backend.h"
-#include "tracing/backends.h"
+#include "native/native_backend.h"
+#include "tracing/vulkan_backends.h"
 
 namespace lab {
 
