@@ -23,7 +23,7 @@ class JsonObject {
     JsonObject object(const char* key, std::initializer_list<const char*> known) const;
     const nlohmann::json& array(const char* key) const;
 
-    std::optional<double> number(const char* key) const;
+    std::optional<double> number(const char* key, const char* rule = "must be a number") const;  // which an error tells
     std::optional<vec3> vector(const char* key) const;            // three numbers
     std::optional<vec3> number_or_vector(const char* key) const;  // a single number stands for three equal ones
     std::optional<uint32_t> integer(const char* key, uint32_t low, uint32_t high) const;
