@@ -71,9 +71,9 @@ const json& JsonObject::array(const char* key) const {
     return value_.at(key);
 }
 
-std::optional<double> JsonObject::number(const char* key) const {
+std::optional<double> JsonObject::number(const char* key, const char* rule) const {
     if (!has(key)) return std::nullopt;
-    if (!value_.at(key).is_number()) fail(key, "must be a number");
+    if (!value_.at(key).is_number()) fail(key, rule);
     if (!is_number(value_.at(key))) fail(key, "is beyond 3.4e38, the largest number of 32 bits");
     return value_.at(key).get<double>();
 }

@@ -23,7 +23,8 @@ class JsonObject {
     JsonObject object(const char* key, std::initializer_list<const char*> known) const;
     const nlohmann::json& array(const char* key) const;
 
-    std::optional<double> number(const char* key) const;
+    // `rule` is what an error says of a value that is no number.
+    std::optional<double> number(const char* key, const char* rule = "must be a number") const;
     std::optional<vec3> vector(const char* key) const;            // three numbers
     std::optional<vec3> number_or_vector(const char* key) const;  // a single number stands for three equal ones
     std::optional<uint32_t> integer(const char* key, uint32_t low, uint32_t high) const;

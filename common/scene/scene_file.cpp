@@ -89,9 +89,10 @@ CameraPose read_camera(const JsonObject& camera) {
     pose.aperture_diameter = static_cast<float>(camera.number("aperture_diameter").value_or(0));
     if (!(pose.aperture_diameter >= 0 && pose.aperture_diameter <= 1e18f))
         camera.fail("aperture_diameter", "must be from 0 to 1e18");
-    if (const auto focus = camera.number("focus_distance")) {
+    constexpr auto rule_of_focus = "must be a number above 0 (1e18 is infinity)";
+    if (const auto focus = camera.number("focus_distance", rule_of_focus)) {
         pose.focus_distance = static_cast<float>(*focus);
-        if (!(pose.focus_distance > 0)) camera.fail("focus_distance", "must be above 0 (1e18 is infinity)");
+        if (!(pose.focus_distance > 0)) camera.fail("focus_distance", rule_of_focus);
     }
     return pose;
 }

@@ -118,7 +118,8 @@ class SceneFiles(ProgramTest):
         good = (self.folder / "quad.json").read_text()
         for key, value in (("camera.vertical_fov", 1e300), ("meshes.0.scale", 1e300), ("meshes.0.translation", [1e300, 0, 0])):
             self.refuse_change(key, value, "32 bits")
-        self.refuse_change("camera.focus_distance", -1, "1e18 is infinity")
+        for focus in (-1, "infinity"):
+            self.refuse_change("camera.focus_distance", focus, r"must be a number above 0 \(1e18 is infinity\)")
         for number in ("NaN", "Infinity", "1e999", "-1e999"):
             self.refuse_text(good.replace("40", number))
 

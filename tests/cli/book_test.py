@@ -13,6 +13,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from tools_path import PROJECT, TOOLS  # first: it finds the others
+import numpy as np
 from book import readability, search
 from browser import CHROMIUM, Browser
 from project import CHAPTERS
@@ -39,6 +40,16 @@ INSPECT = r"""(() => {
 WIDE = 1280  # pixels
 CUT_CODE = """[...document.querySelectorAll("pre > code")].filter(code => code.scrollWidth > code.clientWidth + 1)
     .map(code => code.textContent.slice(0, 80))"""
+# What those miss who see no colours or have no mouse, and the colours of a comment and what is behind it.
+MISSED = """(() => {
+    const all = (selector, isMissed) => [...document.querySelectorAll(selector)].filter(element => isMissed(element, getComputedStyle(element)));
+    return [...all("article a:not(.headerlink)", (link, style) => style.textDecorationLine !== "underline"),
+            ...all("article p, article div", (element, style) => /auto|scroll/.test(style.overflowX) && element.scrollWidth > element.clientWidth && element.tabIndex !== 0),
+            ...all("[role='dialog']", dialog => !dialog.ariaLabel), ...all(".md-search__output", (output, style) => style.visibility === "visible")]
+        .map(element => element.outerHTML.slice(0, 80));
+})()"""
+COLOURS = """[getComputedStyle(document.querySelector(".c1")).color, getComputedStyle(document.querySelector("pre > code")).backgroundColor]"""
+LEAST_CONTRAST = 4.5
 SEARCH = r"""new Promise((found, failed) => {
     document.querySelector("#__search").click();
     const input = document.querySelector(".md-search__input"), results = document.querySelector(".md-search-result__list");
@@ -167,6 +178,21 @@ class BookInBrowser_all(Site, unittest.TestCase):
         for page in pages:
             self.browser.visit(page.as_uri())
             self.assertEqual(self.browser.evaluate(CUT_CODE), [], page)
+
+    def test_pages_are_for_everybody(self):
+        for name in ("index.html", f"chapters/{CHAPTERS[3]}/index.html", "docs/numerics.html"):
+            self.browser.visit((self.site / name).as_uri())
+            self.assertEqual(self.browser.evaluate(MISSED), [], name)
+
+        def luminance(colour):
+            return sum(weight * (x / 12.92 if x <= 0.04 else ((x + 0.055) / 1.055) ** 2.4) for weight, x in zip((0.2126, 0.7152, 0.0722), colour / 255))
+
+        self.browser.visit((self.site / "shaders/world/shading_data.glsl.html").as_uri())
+        for scheme in ("default", "slate"):
+            self.browser.evaluate(f"document.body.setAttribute('data-md-color-scheme', '{scheme}')")
+            text, behind = (np.array([*map(float, re.findall(r"[\d.]+", colour)), 1])[:4] for colour in self.browser.evaluate(COLOURS))
+            dark, bright = sorted(map(luminance, (behind[:3] + text[3] * (text - behind)[:3], behind[:3])))
+            self.assertGreaterEqual((bright + 0.05) / (dark + 0.05), LEAST_CONTRAST, scheme)
 
     def test_the_line_of_one_is_in_view(self):
         self.browser.visit((self.site / "docs/results.html").as_uri())

@@ -355,9 +355,9 @@ class NativeFailures_all(CopiedLab, ProgramTest):
                 self.assert_error(self.render(LAB_LANES="0"), 3, *words)  # lanes ask for each element
 
     def test_lanes_that_exhaust_the_stack_say_so(self):
-        """Each of these arrays is small enough to run in lanes, and all together are larger than the stack."""
+        """Each of these arrays is small enough to run in lanes, be they 8 or 16, and all together are larger than the stack."""
         code = self.shader.read_text(encoding="utf-8")
-        arrays = "".join(f"float a{i}[30000]; a{i}[seed.x & 4095u] = 1.0; radiance *= a{i}[seed.y & 4095u]; " for i in range(20))
+        arrays = "".join(f"float a{i}[15000]; a{i}[seed.x & 4095u] = 1.0; radiance *= a{i}[seed.y & 4095u]; " for i in range(40))
         self.shader.write_text(code.replace("return radiance;", f"{arrays} return radiance;"), encoding="utf-8")
         self.assert_error(self.render(), 3, "need more than the stack")
 

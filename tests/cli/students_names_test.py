@@ -106,11 +106,21 @@ class StudentsErrorsTest(StudentsPage, ProgramTest):
                 ("float sample = 1.0;\nreturn vec3(sample);\n}", 2, "choose another"),
                 ("if (ray.origin.x > 0.0)\ndiscard;\nreturn vec3(1.0);\n}", 3, "discard is for pixels of triangles"),
                 ("#ifdef SOMETHING\nreturn vec3(1.0);\n}", 2, "this condition has no #endif"),
+                ("int i = 0;\nfloat a[2][3];\nreturn vec3(a[i][i]);\n}", 3, r"write float a\[6\] and a\[3 \* i \+ j\] instead"),
+                ("float[2][3] a;\nreturn vec3(a[0][0]);\n}", 2, "write float a.6. "),
+                ("float[3] a[2];\nreturn vec3(a[0][0]);\n}", 2, "write float a.6. "),
+                ("struct Table {\nfloat a[2][3];\n} table;\nreturn vec3(table.a[0][0]);\n}", 3, "write float a.6. "),
+                ("#define TEXT(x) #x\nreturn vec3(1.0);\nTEXT(a)\n}", 4, "# has no meaning here"),
+                ("#define JOIN(x, y) x##y\nreturn vec3(JOIN(1.0,));\n}", 3, "## needs a word on both sides"),
+                ("#define JOIN(x, y) x##y\nreturn vec3(JOIN(+, x));\n}", 3, r"\+ ## x is no word of GLSL"),
+                ("#if 0\nit's \"open\n#endif\nreturn vec3(1.0);\n}", 3, "this text is never closed"),
+                ("float größe = 1.0;\nreturn vec3(1.0);\n}", 2, "'ö' is no ASCII character"),
                 ("return vec3(1.0)\n}", 3, "is a semicolon or a bracket missing here or before?")):
             with self.subTest(body=body):
                 self.assertRegex(self.error(self.HEAD + body + "\n"), rf"^FILE:{place}: .*{advice}")
         calls = "float g(float x);\nfloat f(float x) { return g(x); }\nfloat g(float x) { return f(x); }\n"
         self.assertRegex(self.error(f"{calls}{self.HEAD}return vec3(f(1.0));\n}}"), r"^FILE:\d: [fg]\(\) calls itself by way of [fg]\(\): GLSL has no recursion")
+        self.assertRegex(self.error(f"float first(float a[2][3]) {{ return a[0][0]; }}\n{self.HEAD}return vec3(1.0);\n}}"), "^FILE:1: .*write float a.6. ")
         for name in ("path_tracer(Ray ray, inout uvec2 seed)", "path_trace(Ray ray)"):
             self.assertIn("the shader has to define vec3 path_trace(Ray ray, inout uvec2 seed)", self.error(f"vec3 {name} {{ return vec3(1.0); }}"))
 

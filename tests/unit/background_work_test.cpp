@@ -42,6 +42,8 @@ TEST(BackgroundWork, EveryErrorIsAMessageButTheLossOfTheDevice) {
     EXPECT_EQ(message_of(DeviceError("lacks it")), "lacks it");
     EXPECT_EQ(message_of(DeviceFailure("too large")), "too large");
     EXPECT_EQ(message_of(std::bad_alloc()), "out of memory: use a smaller scene or image");
+    const std::system_error no_thread(std::make_error_code(std::errc::resource_unavailable_try_again));
+    EXPECT_NE(message_of(no_thread).find("raise the limit of memory (ulimit -v)"), std::string::npos);
     EXPECT_NE(message_of(vk::OutOfHostMemoryError("vkCreateImage")).find("the device failed: vkCreateImage"), std::string::npos);
     EXPECT_THROW(message_of(vk::DeviceLostError("vkQueueSubmit")), vk::DeviceLostError);
 }

@@ -64,6 +64,12 @@ TEST(NativeLanes, KnowTheLengthOfOneNumber) {
               std::pair(20u, std::string()));
 }
 
+TEST(NativeLanes, RunOneByOneWhereAnArrayTakesTheStack) {
+    const auto [result, reason] = result_and_reason("float a[40000]; a[i] = 3.0; results[i] = uint(a[i]);");
+    EXPECT_EQ(result, 3u);
+    EXPECT_PRED_FORMAT2(::testing::IsSubstring, "fits on the stack for one path only", reason);
+}
+
 // More than 2^31 words: from 2^27 triangles on, of 64 bytes each.
 TEST(NativeLanes, ReachTheEndOfLargeArrays) {
     struct Element {

@@ -7,6 +7,7 @@ live.glsl = (() => {
     // What compilers say, and what helps; the first that fits.
     const ERROR_HINTS = [
         [/'path_trace' : no matching/, "the shader has to define vec3 path_trace(Ray ray, inout uvec2 seed)"],
+        [/arrays of arrays/, "browsers have none: write float a[6] and a[3 * i + j] instead of float a[2][3] and a[i][j]"],
         [/'%' : wrong operand/, "% is for integers: mod(x, y) is for others"],
         [/dimension mismatch|not matching type/, "one number cannot stand for three, nor three for one: vec3(x) makes three of one, and v.x takes one of three"],
         [/wrong operand types|cannot convert|no operation/, "both sides need the same type: 2.0 * x instead of 2 * x, float(i) for an integer i"],

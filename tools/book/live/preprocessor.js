@@ -7,25 +7,27 @@ live.preprocessor = (() => {
     const fail = ({ file, line }, message) => { throw new ShaderError(`${file}:${line}: ${message}`); };
 
     const TOKEN = new RegExp([
-        String.raw`(?<space>(?:\\\n|\s)+|\/\/(?:\\\n|[^\n])*|\/\*[^]*?\*\/)`, String.raw`(?<open>\/\*)`, String.raw`[A-Za-z_]\w*`,
+        String.raw`(?<space>\s+|\/\/[^\n]*|\/\*[^]*?\*\/)`, String.raw`(?<open>\/\*)`, String.raw`[A-Za-z_]\w*`,
         String.raw`(?:0[xX][\da-fA-F]+|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\w*`, String.raw`"[^"\n]*"`,
         String.raw`<<=|>>=|\+\+|--|&&|\|\||\^\^|<<|>>|##|[-+*\/%&|^<>=!]=`, "[^]"].join("|"), "gu");
     const isWord = text => /^[A-Za-z_]/.test(text);
 
-    // The tokens of a file. `isFirst`: of a line; `hasSpace`: before it.
+    // The tokens of a file, where a \ joins its line with the next one, even within a word. `isFirst`: of a line; `hasSpace`: before it.
     function tokensOf(file, text) {
-        const tokens = [], isEngine = file.startsWith("shaders/");
-        let line = 1, isFirst = true, hasSpace = true;
-        for (const { 0: piece, groups: { space, open } } of text.replace(/^\uFEFF/, "").replace(/\r\n?/g, "\n").matchAll(TOKEN)) {
+        const tokens = [], isEngine = file.startsWith("shaders/"), parts = text.replace(/^\uFEFF/, "").replace(/\r\n?/g, "\n").split("\\\n");
+        let line = 1, isFirst = true, hasSpace = true, length = 0;
+        const joins = parts.slice(0, -1).map(part => length += part.length);
+        for (const { 0: piece, index, groups: { space, open } } of parts.join("").matchAll(TOKEN)) {
+            for (; joins[0] <= index; joins.shift()) ++line;
             const place = { file, line };
             line += piece.split("\n").length - 1;
             if (open) fail(place, "this comment is never closed: */ is missing");
             if (space) {
                 hasSpace = true;
-                isFirst ||= !piece.startsWith("/") && piece.replaceAll("\\\n", "").includes("\n");  // a comment is one space
+                isFirst ||= !piece.startsWith("/") && piece.includes("\n");  // a comment is one space
                 continue;
             }
-            if (/[^\x00-\x7f]/u.test(piece)) fail(place, `'${piece}' is no ASCII character: GLSL knows others in comments only`);
+            if (piece === '"') fail(place, 'this text is never closed: a second " is missing in its line');
             tokens.push({ text: piece, ...place, isEngine, isFirst, hasSpace });
             isFirst = hasSpace = false;
         }
@@ -51,6 +53,10 @@ live.preprocessor = (() => {
             this.visit(file);
             if (this.conditions.length) fail(this.conditions.at(-1).place, "this condition has no #endif");
             this.flush();
+            for (const token of this.result) {
+                if (/[^\x00-\x7f]/u.test(token.text)) fail(token, `'${token.text}' is no ASCII character: GLSL knows others in comments only`);
+                if (token.text.startsWith("#")) fail(token, `${token.text} has no meaning here: # begins the line of a directive, ## joins words in a #define, and GLSL has no texts`);
+            }
             return this.result;
         }
 
@@ -130,22 +136,34 @@ live.preprocessor = (() => {
         expand(tokens) {
             const input = [...tokens].reverse(), output = [];
             while (input.length) {
-                const token = input.pop(), macro = token.hidden?.has(token.text) ? undefined : this.macros.get(token.text), values = new Map();
+                const token = input.pop(), macro = token.hidden?.has(token.text) ? undefined : this.macros.get(token.text);
                 if (!macro || macro.parameters && input.at(-1)?.text !== "(") {
                     output.push(token);
                     continue;
                 }
-                if (macro.parameters) {
-                    const given = this.takeArguments(input, token), { parameters } = macro;
-                    if (given.length !== parameters.length && !(parameters.length === 0 && given[0].length === 0))
-                        fail(token, `the macro ${token.text} takes ${parameters.length} arguments instead of ${given.length}`);
-                    parameters.forEach((name, i) => values.set(name, this.expand(given[i])));
-                }
-                const hidden = new Set([...token.hidden ?? [], token.text]), { file, line } = token;
-                const body = macro.body.flatMap(part => values.get(part.text) ?? { ...part, file, line });
-                input.push(...body.map(part => ({ ...part, hidden: new Set([...part.hidden ?? [], ...hidden]) })).reverse());
+                const { parameters } = macro, given = parameters ? this.takeArguments(input, token) : [];
+                if (parameters && given.length !== parameters.length && !(parameters.length === 0 && given[0].length === 0))
+                    fail(token, `the macro ${token.text} takes ${parameters.length} arguments instead of ${given.length}`);
+                const hide = part => ({ ...part, hidden: new Set([...part.hidden ?? [], ...token.hidden ?? [], token.text]) });
+                input.push(...this.filled(macro, given, token).map(hide).reverse());
             }
             return output;
+        }
+
+        // A macro's body at a place, with its arguments. ## joins the words beside it, arguments before they are expanded.
+        filled({ parameters = [], body }, given, { file, line }) {
+            const result = [], isJoint = at => body[at]?.text === "##", wrong = message => fail({ file, line }, message);
+            body.forEach((part, i) => {
+                if (isJoint(i)) return;
+                const argument = given[parameters.indexOf(part.text)], isRight = isJoint(i - 1), isJoined = isRight || isJoint(i + 1);
+                const words = !argument ? [{ ...part, file, line }] : isJoined ? argument : this.expand(argument);
+                if (isJoined && (!words.length || isJoint(0) || isJoint(body.length - 1))) wrong("## needs a word on both sides");
+                if (!isRight) return result.push(...words);
+                const left = result.pop(), [right, ...others] = words, text = left.text + right.text;
+                if (text.match(TOKEN)[0] !== text) wrong(`${left.text} ## ${right.text} is no word of GLSL`);
+                result.push({ ...left, text }, ...others);
+            });
+            return result;
         }
 
         // The arguments of a macro, from the end of `input`, which begins with their bracket.
