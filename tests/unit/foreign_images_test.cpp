@@ -1,6 +1,7 @@
 // Images as other programs write them.
 #include <zlib.h>
 
+#include "files/project_folder.h"
 #include "film/film_file.h"
 #include "image/encoding.h"
 #include "image/image.h"
@@ -264,6 +265,12 @@ TEST(ForeignExr, CompressionsThatAreNotReadHaveNames) {
     }
     file[compression] = 77;
     EXPECT_USER_ERROR(read_exr(folder.write("a.exr", file)), "damaged or unsupported");
+}
+
+// Among them channels of integers beside three of 16-bit floats.
+TEST(ForeignExr, SeedsOfTheFuzzerAreRead) {
+    for (const auto& seed : std::filesystem::directory_iterator(project_folder() / "tests/fuzz/seeds/exr"))
+        EXPECT_NO_THROW(read_exr(seed.path())) << seed.path();
 }
 
 TEST(ForeignExr, OtherPrimariesHaveANote) {

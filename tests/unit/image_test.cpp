@@ -157,6 +157,9 @@ TEST(Exr, RefusesBlocksThatAreTooShort) {
     while (!valid.substr(table).starts_with(little_endian(uint64_t{table + 8}))) ++table;
     for (const uint32_t size : {0u, 12u})
         EXPECT_USER_ERROR(read_exr(folder.write("b.exr", patched(valid, table + 12, little_endian(size)))), "damaged");
+    std::string uncompressed = patched(valid, table + 12, little_endian(uint32_t{12}));
+    uncompressed[uncompressed.find("compression", uncompressed.find("compression") + 1) + 16] = 0;
+    EXPECT_USER_ERROR(read_exr(folder.write("b.exr", uncompressed)), "damaged");
 }
 
 TEST(Hdr, RoundTripWithinTheSharedExponent) {
