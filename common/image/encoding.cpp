@@ -11,10 +11,10 @@ namespace {
 
 constexpr int level = 4;  // a higher level hardly shrinks noise further
 
-// Compresses a whole stream or, with negative window bits, a raw part without header and checksum.
-std::string deflate_all(std::string_view bytes, int window_bits, int flush, int strategy) {
+// Compresses a part of a stream, without header and checksum.
+std::string deflate_part(std::string_view bytes, int flush) {
     z_stream stream{};
-    if (deflateInit2(&stream, level, Z_DEFLATED, window_bits, 9, strategy) != Z_OK) throw std::bad_alloc();
+    if (deflateInit2(&stream, level, Z_DEFLATED, -MAX_WBITS, 9, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
     std::string result(deflateBound(&stream, static_cast<uLong>(bytes.size())) + 16,
                        '\0');  // 16: more than a flush adds
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
@@ -37,8 +37,6 @@ std::string big_endian(uint32_t number) {
 
 }  // namespace
 
-std::string compress_numbers(std::string_view bytes) { return deflate_all(bytes, MAX_WBITS, Z_FINISH, Z_RLE); }
-
 std::string compress_in_parallel(std::string_view bytes) {
     constexpr size_t piece_size = 1 << 18;
     struct Piece {
@@ -49,7 +47,7 @@ std::string compress_in_parallel(std::string_view bytes) {
     in_parallel(bytes.size(), piece_size, [&](size_t begin, size_t end) {
         const std::string_view piece = bytes.substr(begin, end - begin);
         const int flush = end == bytes.size() ? Z_FINISH : Z_SYNC_FLUSH;
-        pieces[begin / piece_size] = {deflate_all(piece, -MAX_WBITS, flush, Z_DEFAULT_STRATEGY),
+        pieces[begin / piece_size] = {deflate_part(piece, flush),
                                       adler32(adler32(0, nullptr, 0), to_bytes(piece), static_cast<uInt>(piece.size()))};
     });
     std::string stream = "\x78\x5e";  // header: deflate with a 32 KiB window, fast level

@@ -14,10 +14,6 @@ std::string little_endian(Number number) {
     return {reinterpret_cast<const char*>(&number), sizeof number};
 }
 
-// A zlib stream of numbers with noise, compressed by the calling thread. It seeks only equal neighbours, which takes half the
-// time and for noise hardly more bytes.
-std::string compress_numbers(std::string_view bytes);
-
 // A zlib stream of independent pieces, compressed by all threads.
 std::string compress_in_parallel(std::string_view bytes);
 

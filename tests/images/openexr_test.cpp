@@ -1,4 +1,5 @@
-// Our OpenEXR reader against the library of the format's authors, which writes files of every construct that we accept.
+// Our OpenEXR reader, which uses the C interface of the format's authors, against their C++ classes, which write files of every
+// construct that we accept.
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

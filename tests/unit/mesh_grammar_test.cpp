@@ -1,5 +1,9 @@
-// Random valid OBJ and MTL files with every construct, read by the loader and by a second reader that follows the grammar in
-// docs/scenes.md. It splits lines with regular expressions and shares no code with the first.
+// Random valid OBJ and MTL files with every construct, read by the loader. tinyobjloader reads the same meshes without what it
+// misreads: marks, NULs, joined lines, comments behind statements, slashes behind the last index, quotes and several libraries.
+#define TINYOBJLOADER_IMPLEMENTATION
+#define TINYOBJLOADER_USE_DOUBLE
+#include <tiny_obj_loader.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -15,6 +19,7 @@ namespace {
 using Words = std::vector<std::string>;
 
 // ---------------------------------------------------------------------------------------------- the second reader
+// tinyobjloader does not tell which statements a material has.
 struct SecondMaterial {
     std::map<std::string, std::vector<float>> numbers;
     std::string texture;
@@ -27,109 +32,64 @@ struct SecondMaterial {
     }
 };
 
-struct SecondMesh {
-    std::vector<vec3> positions, normals;
-    std::vector<vec2> texture_coordinates;
-    std::vector<ObjCorner> corners;
-    std::vector<std::string> triangle_materials;
-    std::map<std::string, SecondMaterial> materials;
-};
-
-// Lists of keyword and the text behind it.
-std::vector<std::pair<std::string, std::string>> second_statements(const std::filesystem::path& file) {
-    std::string text = file_bytes(file);
-    text = text.substr(0, text.find('\0'));
-    text = std::regex_replace(text, std::regex("^\xef\xbb\xbf"), "");
-    text = std::regex_replace(text, std::regex("\r\n|\r"), "\n");
-    const std::regex names("[ \t]*(mtllib|usemtl|newmtl|map_Kd|g|o)\\b.*"), name_comment("[ \t]#([ \t].*)?$"), any_comment("#.*");
-    std::istringstream lines(text);
-    std::vector<std::pair<std::string, std::string>> statements;
-    std::string joined;
-    for (std::string line; std::getline(lines, line);) {
-        const bool is_name = std::regex_match(joined + line, names);
-        line = std::regex_replace(line, is_name ? name_comment : any_comment, "");
-        std::smatch parts;
-        if (std::regex_match(line, parts, std::regex("(.*)\\\\[ \t]*"))) {
-            joined += parts[1].str() + " ";
-            continue;
-        }
-        line = joined + line;
-        joined.clear();
-        if (std::regex_match(line, parts, std::regex("[ \t]*([^ \t]+)[ \t]*(.*?)[ \t]*")))
-            statements.emplace_back(parts[1], parts[2]);
-    }
-    return statements;
-}
-
-Words split(const std::string& text) {
-    std::istringstream stream(text);
-    return {std::istream_iterator<std::string>(stream), {}};
-}
-
-std::vector<float> second_numbers(const std::string& text) {
-    std::vector<float> numbers;
-    for (const std::string& word : split(text)) numbers.push_back(static_cast<float>(std::strtod(word.c_str(), nullptr)));
-    return numbers;
-}
-
-std::string without_quotes(const std::string& name) { return std::regex_replace(name, std::regex("^\"(.*)\"$"), "$1"); }
-
-void second_read_mtl(const std::filesystem::path& file, std::map<std::string, SecondMaterial>& known) {
-    const std::regex option(
-        "^(-(blendu|blendv|clamp|cc|type|imfchan|texres|colorspace|bm|boost)[ \t]+[^ \t]+|-mm([ \t]+[-+.0-9eE]+(?=[ \t])){1,2}|"
-        "-[ost]([ \t]+[-+.0-9eE]+(?=[ \t])){1,3})[ \t]+");
+// Reads statements of a keyword, a blank and the rest. The first material of a name counts.
+std::map<std::string, SecondMaterial> second_materials(const std::string& mtl) {
     std::map<std::string, SecondMaterial> materials;
     SecondMaterial ignored, *material = nullptr;
-    for (auto [keyword, value] : second_statements(file)) {
+    std::istringstream lines(mtl);
+    for (std::string keyword, rest; lines >> keyword && std::getline(lines >> std::ws, rest);) {
         if (keyword == "newmtl") {
-            const auto [place, is_new] = materials.try_emplace(without_quotes(value));
+            const auto [place, is_new] = materials.try_emplace(rest);
             material = is_new ? &place->second : &ignored;
         } else if (keyword == "map_Kd") {
-            for (std::string before; before != value;) before = value, value = std::regex_replace(value, option, "");
-            material->texture = std::regex_replace(without_quotes(value), std::regex("\\\\"), "/");
+            material->texture = rest;
         } else {
-            material->numbers[keyword == "Kt" ? "Tf" : keyword] = second_numbers(value);
+            std::istringstream words(rest);
+            std::vector<float>& numbers = material->numbers[keyword == "Kt" ? "Tf" : keyword];
+            numbers.clear();
+            for (std::string word; words >> word;) numbers.push_back(static_cast<float>(std::strtod(word.c_str(), nullptr)));
         }
     }
-    known.merge(materials);
+    return materials;
 }
 
-SecondMesh second_read_obj(const std::filesystem::path& file) {
-    SecondMesh mesh;
-    std::string material;
-    const auto index = [](const std::string& text, size_t count) {
-        const int number = text.empty() ? 0 : std::stoi(text);
-        return number == 0 ? ObjCorner::none : static_cast<uint32_t>(number > 0 ? number - 1 : static_cast<int>(count) + number);
-    };
-    for (const auto& [keyword, value] : second_statements(file)) {
-        if (keyword == "usemtl") material = without_quotes(value);
-        if (keyword == "mtllib") {
-            const std::regex name("\"([^\"]*)\"|([^ \t]+)");
-            for (std::sregex_iterator match(value.begin(), value.end(), name), end; match != end; ++match)
-                second_read_mtl(
-                    file.parent_path() / std::regex_replace((*match)[1].str() + (*match)[2].str(), std::regex("\\\\"), "/"),
-                    mesh.materials);
-        }
-        if (keyword == "f") {
-            std::vector<ObjCorner> face;
-            for (const std::string& word : split(value)) {
-                std::smatch parts;
-                EXPECT_TRUE(std::regex_match(word, parts, std::regex("([^/]+)/?([^/]*)/?([^/]*)"))) << word;
-                face.push_back({index(parts[1], mesh.positions.size()), index(parts[2], mesh.texture_coordinates.size()),
-                                index(parts[3], mesh.normals.size())});
+struct SecondMesh {
+    std::vector<double> positions, normals, texture_coordinates;
+    std::vector<ObjCorner> corners;
+    std::vector<std::string> triangle_materials;
+};
+
+SecondMesh second_mesh(const std::string& obj, const std::string& mtl) {
+    tinyobj::attrib_t arrays;
+    std::vector<tinyobj::shape_t> shapes;
+    std::vector<tinyobj::material_t> materials;
+    std::string warnings, errors;
+    std::istringstream text("mtllib both.mtl\n" + obj), libraries(mtl);
+    tinyobj::MaterialStreamReader library(libraries);
+    EXPECT_TRUE(tinyobj::LoadObj(&arrays, &shapes, &materials, &warnings, &errors, &text, &library, false)) << errors;
+    SecondMesh mesh{arrays.vertices, arrays.normals, arrays.texcoords, {}, {}};
+    for (const tinyobj::shape_t& shape : shapes) {
+        const tinyobj::index_t* face = shape.mesh.indices.data();
+        const auto corner = [&](size_t i) {  // -1 stands for none, here too
+            return ObjCorner{static_cast<uint32_t>(face[i].vertex_index), static_cast<uint32_t>(face[i].texcoord_index),
+                             static_cast<uint32_t>(face[i].normal_index)};
+        };
+        for (size_t f = 0; f < shape.mesh.num_face_vertices.size(); face += shape.mesh.num_face_vertices[f++])
+            for (size_t i = 2; i < shape.mesh.num_face_vertices[f]; ++i) {
+                mesh.corners.insert(mesh.corners.end(), {corner(0), corner(i - 1), corner(i)});
+                const int material = shape.mesh.material_ids[f];
+                mesh.triangle_materials.push_back(material < 0 ? "" : materials.at(static_cast<size_t>(material)).name);
             }
-            for (size_t i = 2; i < face.size(); ++i) {
-                mesh.corners.insert(mesh.corners.end(), {face[0], face[i - 1], face[i]});
-                mesh.triangle_materials.push_back(material);
-            }
-        }
-        if (keyword != "v" && keyword != "vt" && keyword != "vn") continue;
-        const std::vector<float> numbers = second_numbers(value + " 0 0");
-        if (keyword == "v") mesh.positions.emplace_back(numbers[0], numbers[1], numbers[2]);
-        if (keyword == "vn") mesh.normals.emplace_back(numbers[0], numbers[1], numbers[2]);
-        if (keyword == "vt") mesh.texture_coordinates.emplace_back(numbers[0], numbers[1]);
     }
     return mesh;
+}
+
+// Its doubles have errors in their last bits.
+template <typename Vector>
+void expect_equal(const std::vector<Vector>& read, const std::vector<double>& second) {
+    ASSERT_EQ(read.size() * sizeof(Vector) / sizeof(float), second.size());
+    for (size_t i = 0; i < second.size(); ++i)
+        EXPECT_FLOAT_EQ(reinterpret_cast<const float*>(read.data())[i], static_cast<float>(second[i]));
 }
 
 void expect_equal(const MtlMaterial& read, const SecondMaterial& second, const std::filesystem::path& folder) {
@@ -156,6 +116,11 @@ void expect_equal(const MtlMaterial& read, const SecondMaterial& second, const s
 }
 
 // ---------------------------------------------------------------------------------------------- the writer of files
+std::string without_blanks(std::string name) {
+    std::ranges::replace(name, ' ', '_');
+    return name;
+}
+
 class Writer {
   public:
     explicit Writer(uint32_t seed) : random_(seed) {}
@@ -180,7 +145,8 @@ class Writer {
     }
 
     // Adds a statement, with everything around it that has no meaning. Blanks in names must stay as they are.
-    void add(std::string statement, bool is_name = false) {
+    void add(const std::string& statement, bool is_name = false, const std::string& plain = "") {
+        plain_ += (plain.empty() ? statement : plain) + "\n";
         std::string text;
         for (const char c : statement)
             text += c != ' ' || is_name ? std::string(1, c)
@@ -193,6 +159,16 @@ class Writer {
         text_ += text + end();
         if (chance(20)) text_ += one_of({"", "# comment", "\t#v 1 2 3", "# v 1 2 \\", " "}) + end();
     }
+
+    // Adds a name, which tinyobjloader would read up to its first blank.
+    void add_name(const std::string& keyword, const std::string& name) {
+        add(keyword + " " + quoted(name), true, keyword + " " + without_blanks(name));
+    }
+
+    std::string quoted(const std::string& name) { return chance(20) ? '"' + name + '"' : name; }
+
+    // What was added, as tinyobjloader reads it right.
+    std::string take_plain() { return std::exchange(plain_, ""); }
 
     std::string take() {
         std::string text = chance(30) ? "\xef\xbb\xbf" + text_ : text_;
@@ -213,19 +189,17 @@ class Writer {
     }
 
     std::mt19937 random_;
-    std::string text_, line_end_ = "\n";
+    std::string text_, plain_, line_end_ = "\n";
 };
 
 const Words material_names = {"red", "light grey", "Material #25", "a/b", "red.001", "\u00e9", "x#y"};
-
-std::string quoted(Writer& writer, const std::string& name) { return writer.chance(20) ? '"' + name + '"' : name; }
 
 std::string material_file(Writer& writer) {
     const auto maybe = [&](const std::string& statement) {
         if (writer.chance(50)) writer.add(statement);
     };
     for (uint32_t count = 1 + writer.below(4); count > 0; --count) {
-        writer.add("newmtl " + quoted(writer, writer.one_of(material_names)), true);
+        writer.add_name("newmtl", writer.one_of(material_names));
         for (const char* keyword : {"Kd ", "Ke ", "Ks ", "Ka "}) maybe(keyword + writer.numbers(3, 0, 1));
         maybe(writer.one_of({"Tf ", "Kt "}) + writer.numbers(3, 0.1, 1));
         maybe("Ns " + writer.number(0, 900));
@@ -243,8 +217,9 @@ std::string material_file(Writer& writer) {
                                    "-t " + writer.numbers(3, 0, 1), "-mm " + writer.numbers(2, 0, 1), "-mm 0", "-bm 0.5",
                                    "-imfchan r", "-blendu off", "-texres 9", "-type sphere", "-colorspace sRGB"}) +
                     " ";
-            writer.add("map_Kd " + options + quoted(writer, writer.one_of({"a.png", "a b.png", "t\\a.png", "2.png", "a#1.png"})),
-                       true);
+            const std::string name = writer.one_of({"a.png", "a b.png", "t\\a.png", "2.png", "a#1.png"});
+            writer.add("map_Kd " + options + writer.quoted(name), true,
+                       "map_Kd " + std::regex_replace(name, std::regex("\\\\"), "/"));
         }
     }
     return writer.take();
@@ -257,7 +232,7 @@ class Mesh {
     std::string text(const Words& libraries) {
         add_libraries(libraries);
         for (int i = 0; i < 12; ++i) {
-            if (writer_.chance(40)) writer_.add("usemtl " + quoted(writer_, writer_.one_of(material_names)), true);
+            if (writer_.chance(40)) writer_.add_name("usemtl", writer_.one_of(material_names));
             if (writer_.chance(10)) writer_.add("usemtl", true);
             if (writer_.chance(30)) writer_.add(writer_.one_of({"g", "g a b", "o x#y", "g \"a", "o C:/a"}), true);
             if (writer_.chance(30)) writer_.add(writer_.one_of({"s off", "l 1 2", "p 1", "vp 0.5", "unknown 1 2"}));
@@ -299,7 +274,7 @@ class Mesh {
                     writer_.one_of({"", "/", "//", "/" + coordinates, "/" + coordinates + "/", "//" + normal,
                                     "/" + coordinates + "/" + normal});
         }
-        writer_.add(face);
+        writer_.add(face, false, std::regex_replace(face, std::regex("/+(?= |$)"), ""));
     }
 
     std::string index(uint32_t place, uint32_t count) {
@@ -319,22 +294,24 @@ TEST(MeshGrammar, IsReadAlikeByASecondReader_all) {
         Writer writer(seed);
         folder.write("a.mtl", material_file(writer));
         folder.write("b.mtl", material_file(writer));
+        const std::string mtl = writer.take_plain();
         const std::filesystem::path file = folder.write("a.obj", Mesh(writer).text({"a.mtl", "b.mtl"}));
 
         SourceFiles sources;
         std::vector<std::string> warnings;
         const ObjFile read = read_obj(file, {}, sources, warnings);
-        const SecondMesh second = second_read_obj(file);
-        EXPECT_EQ(read.positions, second.positions);
-        EXPECT_EQ(read.normals, second.normals);
-        EXPECT_EQ(read.texture_coordinates, second.texture_coordinates);
+        const SecondMesh second = second_mesh(writer.take_plain(), mtl);
+        const std::map<std::string, SecondMaterial> materials = second_materials(mtl);
+        expect_equal(read.positions, second.positions);
+        expect_equal(read.normals, second.normals);
+        expect_equal(read.texture_coordinates, second.texture_coordinates);
         EXPECT_EQ(read.corners, second.corners);
         ASSERT_EQ(read.triangle_materials.size(), second.triangle_materials.size());
         for (size_t i = 0; i < second.triangle_materials.size(); ++i) {
             const MtlMaterial& material = read.materials.at(read.triangle_materials[i]);
-            const auto known = second.materials.find(second.triangle_materials[i]);
-            const bool is_grey = known == second.materials.end();
-            EXPECT_EQ(material.name, is_grey ? "" : known->first);
+            const auto known = materials.find(second.triangle_materials[i]);
+            const bool is_grey = known == materials.end();
+            EXPECT_EQ(without_blanks(material.name), is_grey ? "" : known->first);
             if (is_grey)
                 EXPECT_EQ(material.material.diffuse_albedo, vec3(0.5f));
             else

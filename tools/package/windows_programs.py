@@ -13,7 +13,7 @@ PROGRAMS = BUILD / "programs/bin"
 COMPILER = "x86_64-w64-mingw32-g++-posix"
 OTHERS = ["merge_images", "sample_points"]  # of a package, in addition to the chapters
 # Built from source in the same version as for the Linux programs, so that both behave alike.
-PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libtinyexr-dev"]
+PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libimath-dev", "libopenexr-dev"]
 
 
 def fetch_sources():
