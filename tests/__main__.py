@@ -16,8 +16,12 @@ from project import CHAPTERS, original, run_tool, text_of  # noqa: E402
 from test_report import list_tests  # noqa: E402
 
 BUILD = ROOT / "build"
-WRITTEN = [(kind, file.stem, *names) for kind in (*PROGRAMS, "viewer") for file in sorted(ROOT.glob(f"tests/{kind}/*.cpp"))
-           for names in TEST.findall(text_of(file))]  # all tests in C++
+WRITTEN = [
+    (kind, file.stem, *names)
+    for kind in (*PROGRAMS, "viewer")
+    for file in sorted(ROOT.glob(f"tests/{kind}/*.cpp"))
+    for names in TEST.findall(text_of(file))
+]  # all tests in C++
 EVERYTHING = ["all", "only_in_all"]
 
 
@@ -56,7 +60,9 @@ def choose(words):
 def targets_of_tests(name):
     """The test programs with tests whose names match, or all if others match."""
     kinds = dict.fromkeys(kind for kind, _, suite, test in WRITTEN if re.search(name, f"{kind}.{suite}.{test}"))
-    classes = [f"cli.{found}" for file in ROOT.glob("tests/cli/*_test.py") for found in re.findall(r"(?m)^class (\w+)", text_of(file))]
+    classes = [
+        f"cli.{found}" for file in ROOT.glob("tests/cli/*_test.py") for found in re.findall(r"(?m)^class (\w+)", text_of(file))
+    ]
     start_programs = "mistake" in name or any(re.search(name, found) for found in classes)  # as those in Python do
     return [f"{kind}_tests" for kind in kinds] if kinds and not start_programs else EVERYTHING
 
@@ -72,7 +78,9 @@ def exercise(chapter, suites, others):
         for target in targets:
             # As in tests/CMakeLists.txt: Mesa's driver for CPUs takes long to optimise.
             environment = os.environ | ({} if target.startswith("convergence_") else {"GALLIVM_PERF": "nopt"})
-            failed |= subprocess.run([BUILD / "bin" / target, "--gtest_brief=1", chosen], cwd=ROOT, env=environment).returncode != 0
+            failed |= (
+                subprocess.run([BUILD / "bin" / target, "--gtest_brief=1", chosen], cwd=ROOT, env=environment).returncode != 0
+            )
         if not failed and not any(list_tests(BUILD / "bin" / target, chosen) for target in targets):
             fail(f"{chapter} has no tests named {' or '.join(suites)}")
         return failed
@@ -85,12 +93,26 @@ def run_ctest(arguments):
     results.unlink(missing_ok=True)
     # One more than the number of cores, since tests wait for files and programs; more than a few would only compete for a GPU.
     jobs = min(len(os.sched_getaffinity(0)) + 1, 4)
-    code = subprocess.run(["ctest", "--parallel", str(jobs), "--test-dir", BUILD, "--output-on-failure", "--no-tests=error",
-                           "--output-junit", results, *arguments]).returncode
+    code = subprocess.run(
+        [
+            "ctest",
+            "--parallel",
+            str(jobs),
+            "--test-dir",
+            BUILD,
+            "--output-on-failure",
+            "--no-tests=error",
+            "--output-junit",
+            results,
+            *arguments,
+        ]
+    ).returncode
     cases = list(ElementTree.parse(results).iter("testcase")) if results.exists() else []
     passed = sum(case.get("status") == "run" for case in cases)
-    skipped = sum(case.get("status") == "disabled" or any(why.get("message").startswith("SKIP_") for why in case.iter("skipped"))
-                  for case in cases)
+    skipped = sum(
+        case.get("status") == "disabled" or any(why.get("message").startswith("SKIP_") for why in case.iter("skipped"))
+        for case in cases
+    )
     print("slowest:")
     for case in sorted(cases, key=lambda case: -float(case.get("time")))[:5]:
         print(f"  {float(case.get('time')):5.1f} s  {case.get('name')}")

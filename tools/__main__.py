@@ -9,9 +9,21 @@ from importlib import import_module
 import project
 
 TOOLS = {  # name: module
-    "book": "book.build", "bug": "course.bug", "chapters": "lesson.chapters", "check": "check.command",
-    "debug": "debug.command", "diff": "lesson.diff", "figures": "docs.figures", "handout": "course.handout", "package": "package.make",
-    "reference": "references.make", "report": "report.make", "rooms": "docs.rooms", "sample": "lesson.sample", "show": "lesson.show", "tables": "docs.tables",
+    "book": "book.build",
+    "bug": "course.bug",
+    "chapters": "lesson.chapters",
+    "check": "check.command",
+    "debug": "debug.command",
+    "diff": "lesson.diff",
+    "figures": "docs.figures",
+    "handout": "course.handout",
+    "package": "package.make",
+    "reference": "references.make",
+    "report": "report.make",
+    "rooms": "docs.rooms",
+    "sample": "lesson.sample",
+    "show": "lesson.show",
+    "tables": "docs.tables",
     "windows": "package.windows_programs",
 }
 

@@ -43,7 +43,9 @@ def shaders_of(number):
     chapters = ROOT / "chapters"
     folder = chapters / CHAPTERS[number]
     named = named_files(folder)
-    shaders = list(dict.fromkeys([*sorted(folder.glob("*.glsl")), *(file for file in named.values() if file.is_relative_to(chapters))]))
+    shaders = list(
+        dict.fromkeys([*sorted(folder.glob("*.glsl")), *(file for file in named.values() if file.is_relative_to(chapters))])
+    )
     for shader in shaders:  # grows meanwhile
         shaders += [file for file in includes(shader, named) if file.is_relative_to(chapters) and file not in shaders]
     return shaders

@@ -10,6 +10,7 @@ ROW = re.compile(r'^ *\{"(\w+)", (\d), (\w+), "([^"]*)", "([^"]*)"(.*?)\},$', re
 
 class Keyword(NamedTuple):
     """`count` numbers follow it, if any. `member` is where a material keeps them as they are, or ""."""
+
     name: str
     count: int
     largest: str
@@ -23,8 +24,14 @@ class Keyword(NamedTuple):
 def keyword(row):
     *columns, rest = row
     member, default = (re.search(pattern, rest) for pattern in (r"&Material::(\w+)", r"\.default_number = ([\d.]+)"))
-    return Keyword(columns[0], int(columns[1]), *columns[2:], member[1] if member else "", float(default[1]) if default else 0.0,
-                   "is_albedo = true" in rest)
+    return Keyword(
+        columns[0],
+        int(columns[1]),
+        *columns[2:],
+        member[1] if member else "",
+        float(default[1]) if default else 0.0,
+        "is_albedo = true" in rest,
+    )
 
 
 KEYWORDS = [keyword(match.groups()) for match in ROW.finditer(SOURCE.read_text(encoding="utf-8"))]

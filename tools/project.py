@@ -12,7 +12,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 BINARIES = Path(os.environ.get("LAB_BINARIES", ROOT / "build/bin"))
-KNOWLEDGE = ROOT / "notebook/knowledge"  # the only path from here into the notebook: what ./lab check knows about mistakes, if it is there
+KNOWLEDGE = (
+    ROOT / "notebook/knowledge"
+)  # the only path from here into the notebook: what ./lab check knows about mistakes, if it is there
 CHAPTERS = {int(path.name[:2]): path.name for path in sorted((ROOT / "chapters").glob("[0-9][0-9]_*"))}  # number -> folder
 VARIANTS = {"scalar_rgb": "scalar", "llvm_ad_rgb": "LLVM", "cuda_ad_rgb": "CUDA"}  # of Mitsuba, the slowest first
 BAR_WIDTH = 24
@@ -57,7 +59,9 @@ def description(folder):
 
 def rendered_description(folder):
     """What chapter.json says about renders, as text: without what only tests and tools read."""
-    return json.dumps({key: value for key, value in description(folder).items() if key not in ("check", "exercise", "tests", "measure")})
+    return json.dumps(
+        {key: value for key, value in description(folder).items() if key not in ("check", "exercise", "tests", "measure")}
+    )
 
 
 def original(number):
@@ -103,6 +107,7 @@ class Parser(argparse.ArgumentParser):
 
 def number(kind, low, high=1e9):
     """Converts an argument to a number of this kind between `low` and `high`."""
+
     def convert(text):
         value = kind(text)
         if not low <= value <= high:
@@ -114,7 +119,9 @@ def number(kind, low, high=1e9):
 
 
 def add_device_options(parser):
-    parser.add_argument("--backend", default="auto", metavar="NAME", help="one that --list-devices of a chapter shows; default: auto")
+    parser.add_argument(
+        "--backend", default="auto", metavar="NAME", help="one that --list-devices of a chapter shows; default: auto"
+    )
     parser.add_argument("--device", help="number or part of the name of the device")
 
 
@@ -137,22 +144,31 @@ def run_tool(tool):
 # ---------------------------------------------------------------------------------------------- programs
 def run_program(command, **options):
     """Runs a program without input and captures its output. Ctrl-C does not reach it, since it has its own session."""
-    return subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True,
-                          **{"cwd": ROOT, "encoding": "utf-8", "errors": "backslashreplace", "start_new_session": True, **options})
+    return subprocess.run(
+        list(map(str, command)),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        **{"cwd": ROOT, "encoding": "utf-8", "errors": "backslashreplace", "start_new_session": True, **options},
+    )
 
 
 def run_to_end(command, what, expected=0, **options):
     """The output of a program that must end with this exit code. `what` describes its task in messages."""
     process = run_program(command, **options)
     if process.returncode != expected:
-        raise UserError(f"{what}: exit code {process.returncode} instead of {expected}:\n{process.stdout[-2000:]}{process.stderr[-2000:]}")
+        raise UserError(
+            f"{what}: exit code {process.returncode} instead of {expected}:\n{process.stdout[-2000:]}{process.stderr[-2000:]}"
+        )
     return process.stdout
 
 
 def failure_text(process):
     """The message of a program that failed: the first line of its error, from which others may follow, or else its last line."""
     lines = process.stderr.strip().split("\n")
-    return next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1]) or f"exit code {process.returncode}"
+    return (
+        next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1])
+        or f"exit code {process.returncode}"
+    )
 
 
 def commit():
@@ -176,8 +192,12 @@ def show_progress(name, done, count, started):
     if sys.stderr.isatty():
         filled = BAR_WIDTH * done // count
         bar = "#" * filled + "-" * (BAR_WIDTH - filled)
-        print(f"\r\033[K[{bar}] {100 * done // count} %, {left} left: {name}", end="\n" if done == count else "",
-              file=sys.stderr, flush=True)
+        print(
+            f"\r\033[K[{bar}] {100 * done // count} %, {left} left: {name}",
+            end="\n" if done == count else "",
+            file=sys.stderr,
+            flush=True,
+        )
     elif done in (1, count) or 4 * done // count > 4 * (done - 1) // count:
         print(f"{100 * done // count} %, {left} left: {name}", file=sys.stderr, flush=True)
 

@@ -28,22 +28,37 @@ TRYING = {"runs": grading.RUNS, "first_seed": 3001}  # as a check does, with see
 
 def planned_trials(chapters):
     """Name -> a Trial and the digest of everything that it depends on."""
-    return {key: (trial, digest(settings(trial.chapter, TRYING, grading.SCENES[trial.chapter][0]), code(trial.text), trial.seed,
-                                own_text(trial.chapter), [repr(e) for e in experiments_of(trial.chapter).values()]))
-            for key, trial in trials().items() if trial.chapter in chapters}
+    return {
+        key: (
+            trial,
+            digest(
+                settings(trial.chapter, TRYING, grading.SCENES[trial.chapter][0]),
+                code(trial.text),
+                trial.seed,
+                own_text(trial.chapter),
+                [repr(e) for e in experiments_of(trial.chapter).values()],
+            ),
+        )
+        for key, trial in trials().items()
+        if trial.chapter in chapters
+    }
 
 
 def outdated():
     """The trials that the record lacks, or has of other shaders, experiments or settings."""
     done = read_json(RECORD)["trials"] if RECORD.exists() else {}
-    return [key for key, (_, measured) in planned_trials(project.course()).items() if done.get(key, {}).get("measured") != measured]
+    return [
+        key for key, (_, measured) in planned_trials(project.course()).items() if done.get(key, {}).get("measured") != measured
+    ]
 
 
 def confusion(workshop, chapters, is_anew, jobs):
     done = read_json(RECORD)["trials"] if RECORD.exists() and not is_anew else {}
     everything, lock = planned_trials(project.course()), Lock()
-    record = {"commit": commit(), "trials": {key: trial for key, trial in done.items()
-                                             if key in everything and trial["measured"] == everything[key][-1]}}
+    record = {
+        "commit": commit(),
+        "trials": {key: trial for key, trial in done.items() if key in everything and trial["measured"] == everything[key][-1]},
+    }
 
     def try_naming(item):
         key, (trial, measured) = item
@@ -53,8 +68,15 @@ def confusion(workshop, chapters, is_anew, jobs):
             submission.file.write_text(trial.text, encoding="utf-8")
             result = grading.judge(submission, plan)[0]
             found = diagnose(submission, plan, result["verdict"] == "correct")
-            answer = {"mistake": trial.mistake, "verdict": verdict_with(result["verdict"], found), "named": [each["name"] for each in found["mistakes"]],
-                      "fits": found["fits"], "facts": len(found["facts"]), "measured": measured, **effect(result)}
+            answer = {
+                "mistake": trial.mistake,
+                "verdict": verdict_with(result["verdict"], found),
+                "named": [each["name"] for each in found["mistakes"]],
+                "fits": found["fits"],
+                "facts": len(found["facts"]),
+                "measured": measured,
+                **effect(result),
+            }
         with lock:
             record["trials"][key] = answer
             write_json(RECORD, record)
@@ -68,9 +90,14 @@ def confusion(workshop, chapters, is_anew, jobs):
 
 def effect(result):
     """The largest change of a picture's mean and of its error, both relative: what a check must find."""
-    sure = [abs(test["value"]) for scene in result["scenes"] for test in scene["image"] if abs(test["value"]) > test["half_width"]]
-    return {"bias": max(sure, default=0.0),
-            "noise": max(scene["noise"][0] or 1.0 for scene in result["scenes"]), "rays": max(scene["rays"] for scene in result["scenes"])}
+    sure = [
+        abs(test["value"]) for scene in result["scenes"] for test in scene["image"] if abs(test["value"]) > test["half_width"]
+    ]
+    return {
+        "bias": max(sure, default=0.0),
+        "noise": max(scene["noise"][0] or 1.0 for scene in result["scenes"]),
+        "rays": max(scene["rays"] for scene in result["scenes"]),
+    }
 
 
 def main():

@@ -29,8 +29,11 @@ GOES_ON = True
 # Levels use the seeds of a check without --seed, see grading.first_seed(); the others use seeds that no check has.
 LEVELS = {"runs": grading.RUNS, "first_seed": grading.first_seed(0)}
 # The chapter that a chapter should beat in noise with the same samples, if that is its lesson.
-GAINS_OVER = {number: int(project.chapter_named(says["check"]["gains_over"])[:2]) for number, says in DESCRIPTIONS.items()
-              if "gains_over" in says.get("check", {})}
+GAINS_OVER = {
+    number: int(project.chapter_named(says["check"]["gains_over"])[:2])
+    for number, says in DESCRIPTIONS.items()
+    if "gains_over" in says.get("check", {})
+}
 OWN_SEED, OWN_PICTURES, MISTAKE_SEED = 5001, 4, 6001  # of experiments
 
 
@@ -41,8 +44,10 @@ def settings(chapter, plan, samples, scenes=None):
 
 def level_digest(chapter):
     """Digest of what the levels of a chapter depend on."""
-    return digest(settings(chapter, LEVELS, grading.SCENES[chapter][0]),
-                  *(own_text(number) for number in (chapter, GAINS_OVER.get(chapter)) if number))
+    return digest(
+        settings(chapter, LEVELS, grading.SCENES[chapter][0]),
+        *(own_text(number) for number in (chapter, GAINS_OVER.get(chapter)) if number),
+    )
 
 
 def experiment_digest(chapter, name):
@@ -67,14 +72,25 @@ class Workshop:
         self.options = options
 
     def settings(self, plan, seed=0):
-        return {"backend": self.options.backend, "device": self.options.device, "time_limit": 600, "runs": plan["runs"],
-                "samples": None, "first_seed": plan["first_seed"] + seed, "is_quiet": True}
+        return {
+            "backend": self.options.backend,
+            "device": self.options.device,
+            "time_limit": 600,
+            "runs": plan["runs"],
+            "samples": None,
+            "first_seed": plan["first_seed"] + seed,
+            "is_quiet": True,
+        }
 
     def levels(self, chapter):
         """Levels of the chapter's own shader, with its gain over the chapter that chapter.json names."""
+
         def levels_of(number):
             plan = self.settings(LEVELS) | {"samples": grading.SCENES[chapter][0]}
-            return {case["scene"]: grading.level(case) for case in grading.render(Submission(number, own_shader(number)), plan, grading.SCENES[chapter][1])}
+            return {
+                case["scene"]: grading.level(case)
+                for case in grading.render(Submission(number, own_shader(number)), plan, grading.SCENES[chapter][1])
+            }
 
         levels = levels_of(chapter)
         if chapter in GAINS_OVER:
@@ -87,22 +103,40 @@ class Workshop:
         """What the chapter's own shader shows in an experiment, as lists."""
         # Not one picture of more samples: the spread of its pixels would tell more of what they show and less of their noise.
         with Batch() as batch:
-            sights = [together(seen) for seen in pictures(CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch,
-                                                          repeats=OWN_PICTURES)]
-        return {key: [float(f"{getattr(sight, key):.4g}") for sight in sights] for key in ("mean", "error", "noise", "noise_error", "rays")}
+            sights = [
+                together(seen)
+                for seen in pictures(
+                    CHAPTERS[chapter], experiment.points, self.settings(LEVELS), OWN_SEED, batch, repeats=OWN_PICTURES
+                )
+            ]
+        return {
+            key: [float(f"{getattr(sight, key):.4g}") for sight in sights]
+            for key in ("mean", "error", "noise", "noise_error", "rays")
+        }
 
     def shown(self, bug, expected, before):
         """What a mistake shows in experiments, as text with a number per point: brightness where it differs from the chapter's
         own, or if that is right everywhere, noise and rays. `before` has what earlier experiments have shown."""
         with replaced(bug.file, bug.text) as shaders:
-            facts, sights = observe(bug.chapter, self.settings(LEVELS) | {"shaders": shaders}, expected, lambda *_: True, MISTAKE_SEED)
-        shows = before["shows"] | {name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right}
+            facts, sights = observe(
+                bug.chapter, self.settings(LEVELS) | {"shaders": shaders}, expected, lambda *_: True, MISTAKE_SEED
+            )
+        shows = before["shows"] | {
+            name: to_digits(reading.value for reading in seen.readings) for name, seen in facts.items() if not seen.is_right
+        }
         if shows:
             return {"shows": shows}
         ratios = ratios_of(sights, expected)
-        noise = {name: to_digits((v for v, _ in those), 2) for name, those in ratios["noise"].items()
-                 if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)}
-        rays = {name: to_digits((v for v, _ in those), 3) for name, those in ratios["rays"].items() if any(abs(v - 1) > 0.05 for v, _ in those)}
+        noise = {
+            name: to_digits((v for v, _ in those), 2)
+            for name, those in ratios["noise"].items()
+            if any(abs(math.log(max(v, 0.01))) > 0.2 + 3 * e for v, e in those)
+        }
+        rays = {
+            name: to_digits((v for v, _ in those), 3)
+            for name, those in ratios["rays"].items()
+            if any(abs(v - 1) > 0.05 for v, _ in those)
+        }
         return {"shows": {}, "noise": before.get("noise", {}) | noise, "rays": before.get("rays", {}) | rays}
 
 
@@ -119,13 +153,19 @@ def read_knowledge(chapters):
 
 def planned_knowledge(chapters, before):
     """What should be known about chapters: levels and experiments of their own shader, and what their mistakes show. Filled in as
-    far as `before` has it, measured alike; the rest is empty, and `unseen` lists experiments in which a mistake is not measured yet."""
+    far as `before` has it, measured alike; the rest is empty, and `unseen` lists experiments in which a mistake is not measured yet.
+    """
     knowledge = {}
     for chapter in chapters:
         known = before.get(chapter, {})
         measured = level_digest(chapter)
-        entry = {"title": DESCRIPTIONS[chapter]["title"], "measured": measured,
-                 "levels": known["levels"] if known.get("measured") == measured else None, "experiments": {}, "mistakes": {}}
+        entry = {
+            "title": DESCRIPTIONS[chapter]["title"],
+            "measured": measured,
+            "levels": known["levels"] if known.get("measured") == measured else None,
+            "experiments": {},
+            "mistakes": {},
+        }
         digests = {name: experiment_digest(chapter, name) for name in experiments_of(chapter)}
         for name, now in digests.items():
             old = known.get("experiments", {}).get(name, {})
@@ -134,10 +174,17 @@ def planned_knowledge(chapters, before):
             now, old = digest(code(bug.text)), known.get("mistakes", {}).get(bug.mistake["name"], {})
             old = old if old.get("measured") == now else {"unseen": list(digests)}
             unseen = [name for name in digests if name in old.get("unseen", []) or "mean" not in entry["experiments"][name]]
-            seen = {kind: {name: text for name, text in old[kind].items() if name in digests and name not in unseen}
-                    for kind in ("shows", "noise", "rays") if kind in old}
-            entry["mistakes"][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")} | {
-                "measured": now, "shows": {}} | seen | ({"unseen": unseen} if unseen else {})
+            seen = {
+                kind: {name: text for name, text in old[kind].items() if name in digests and name not in unseen}
+                for kind in ("shows", "noise", "rays")
+                if kind in old
+            }
+            entry["mistakes"][bug.mistake["name"]] = (
+                {key: bug.mistake[key] for key in ("hint", "slide")}
+                | {"measured": now, "shows": {}}
+                | seen
+                | ({"unseen": unseen} if unseen else {})
+            )
         knowledge[chapter] = entry
     return knowledge
 
@@ -146,8 +193,12 @@ def unmeasured(knowledge):
     """What is missing or was measured differently, as (chapter, name of an experiment or a mistake, or "levels")."""
     planned = planned_knowledge(project.course(), knowledge)
     missing = [(chapter, "levels") for chapter, entry in planned.items() if not entry["levels"]]
-    missing += [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["experiments"].items() if "mean" not in seen]
-    return missing + [(chapter, name) for chapter, entry in planned.items() for name, seen in entry["mistakes"].items() if "unseen" in seen]
+    missing += [
+        (chapter, name) for chapter, entry in planned.items() for name, seen in entry["experiments"].items() if "mean" not in seen
+    ]
+    return missing + [
+        (chapter, name) for chapter, entry in planned.items() for name, seen in entry["mistakes"].items() if "unseen" in seen
+    ]
 
 
 def learn(workshop, chapters, is_anew, jobs):
@@ -172,14 +223,33 @@ def learn(workshop, chapters, is_anew, jobs):
     def learn_mistake(bug):
         entry, experiments = knowledge[bug.chapter]["mistakes"][bug.mistake["name"]], knowledge[bug.chapter]["experiments"]
         shown = workshop.shown(bug, {name: experiments[name] for name in entry["unseen"]}, entry)
-        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] = {key: entry[key] for key in ("hint", "slide", "measured")} | shown
+        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] = {
+            key: entry[key] for key in ("hint", "slide", "measured")
+        } | shown
         write(bug.chapter)
 
     run_all("levels", learn_levels, [chapter for chapter in chapters if not knowledge[chapter]["levels"]], jobs)
-    run_all("experiments", learn_experiment, [(chapter, name) for chapter in chapters
-                                              for name, seen in knowledge[chapter]["experiments"].items() if "mean" not in seen], jobs)
-    run_all("mistakes", learn_mistake, [bug for bug in catalogue() if bug.chapter in chapters
-                                        and "unseen" in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]], jobs)
+    run_all(
+        "experiments",
+        learn_experiment,
+        [
+            (chapter, name)
+            for chapter in chapters
+            for name, seen in knowledge[chapter]["experiments"].items()
+            if "mean" not in seen
+        ],
+        jobs,
+    )
+    run_all(
+        "mistakes",
+        learn_mistake,
+        [
+            bug
+            for bug in catalogue()
+            if bug.chapter in chapters and "unseen" in knowledge[bug.chapter]["mistakes"][bug.mistake["name"]]
+        ],
+        jobs,
+    )
     for chapter in chapters:
         write(chapter)
 

@@ -12,6 +12,7 @@ CORRECT_CHECKS = 7  # per correct shader, with different seeds
 @dataclass
 class Trial:
     """A shader to be judged: this text instead of the file `shader`."""
+
     chapter: int
     mistake: str  # its name, or None
     text: str
@@ -33,12 +34,17 @@ def trials():
     correct shader several times."""
     result, correct = {}, [(chapter, "its own", own_shader(chapter), own_shader(chapter)) for chapter in course()]
     for bug in catalogue():
-        result[f"new seeds/{name_of(bug.chapter)}/{bug.mistake['name']}"] = Trial(bug.chapter, bug.mistake["name"], bug.text, bug.file)
+        result[f"new seeds/{name_of(bug.chapter)}/{bug.mistake['name']}"] = Trial(
+            bug.chapter, bug.mistake["name"], bug.text, bug.file
+        )
     for chapter, file, shader, mistakes in variants():
         text = file.read_text(encoding="utf-8")
         correct.append((chapter, file.stem, file, shader))
         for mistake in mistakes:
             wrong = plant(text, mistake["find"], mistake["replace"], f"{mistake['name']} in {file.name}")
             result[f"variants/{name_of(chapter)}/{file.stem}/{mistake['name']}"] = Trial(chapter, mistake["name"], wrong, shader)
-    return result | {f"correct/{name_of(chapter)}/{what}/seed {seed}": Trial(chapter, None, file.read_text(encoding="utf-8"), shader, seed)
-                     for chapter, what, file, shader in correct for seed in range(CORRECT_CHECKS)}
+    return result | {
+        f"correct/{name_of(chapter)}/{what}/seed {seed}": Trial(chapter, None, file.read_text(encoding="utf-8"), shader, seed)
+        for chapter, what, file, shader in correct
+        for seed in range(CORRECT_CHECKS)
+    }

@@ -36,22 +36,33 @@ def untrue(submission, found, those):
     chapter, contradicted = submission.chapter, []
     known = read_json(expected_file(chapter))["experiments"]
     those = those | {"shaders": submission.options}
-    wrong = {name: experiments_of(chapter)[name].points for name, seen in found["readings"].items()
-             if any(abs(value - 1) >= ROUNDING and value != 0 for _, value, _ in seen)}
+    wrong = {
+        name: experiments_of(chapter)[name].points
+        for name, seen in found["readings"].items()
+        if any(abs(value - 1) >= ROUNDING and value != 0 for _, value, _ in seen)
+    }
     with Batch() as batch:
         sights = batch.map(lambda name: pictures(CHAPTERS[chapter], wrong[name], those, SEED, batch, repeats=PICTURES), wrong)
         for (name, points), seen in zip(wrong.items(), sights):
             anew = readings(points, list(map(together, seen)), known_sights(known[name]))
-            contradicted += [[name, at, value, round(again.value, 4)] for (at, value, error), again in zip(found["readings"][name], anew)
-                             if abs(value - again.value) > AGREE * (error**2 + again.error**2)**0.5 + ROUNDING]
+            contradicted += [
+                [name, at, value, round(again.value, 4)]
+                for (at, value, error), again in zip(found["readings"][name], anew)
+                if abs(value - again.value) > AGREE * (error**2 + again.error**2) ** 0.5 + ROUNDING
+            ]
     return contradicted
 
 
 def measured(folder, seed):
     """Digest of what the answer to a submission depends on, besides ./lab check itself."""
     says = read_json(folder / "submission.json")
-    return digest(says, [code(file.read_text(encoding="utf-8")) for file in folder.glob("*.glsl")], seed, own_text(says["chapter"]),
-                  [repr(experiment) for experiment in experiments_of(says["chapter"]).values()])
+    return digest(
+        says,
+        [code(file.read_text(encoding="utf-8")) for file in folder.glob("*.glsl")],
+        seed,
+        own_text(says["chapter"]),
+        [repr(experiment) for experiment in experiments_of(says["chapter"]).values()],
+    )
 
 
 def grade(folder, options):
@@ -63,9 +74,19 @@ def grade(folder, options):
     seconds = [round(time.monotonic() - started, 1)]
     found = diagnose(submission, those, result["verdict"] == "correct")
     verdict = verdict_with(result["verdict"], found)
-    row = {"chapter": says["chapter"], "is_right": says["is_right"], "mistake": says["mistake"], "means": says["means"], "verdict": verdict,
-           "facts": found["facts"], "named": [each["name"] for each in found["mistakes"]], "fits": found["fits"], "next": found["next"],
-           "seconds": [*seconds, found["seconds"]], "measured": measured(folder, options.seed)}
+    row = {
+        "chapter": says["chapter"],
+        "is_right": says["is_right"],
+        "mistake": says["mistake"],
+        "means": says["means"],
+        "verdict": verdict,
+        "facts": found["facts"],
+        "named": [each["name"] for each in found["mistakes"]],
+        "fits": found["fits"],
+        "next": found["next"],
+        "seconds": [*seconds, found["seconds"]],
+        "measured": measured(folder, options.seed),
+    }
     return row | ({"untrue": untrue(submission, found, those)} if verdict != "correct" else {"untrue": []})
 
 
@@ -82,7 +103,9 @@ def main():
     grading.stay_in_the_driver(options.backend)
     path = RECORDS / f"check/{options.record}.json"
     record = read_json(path) if path.exists() else {"submissions": {}}
-    folders = sorted(file.parent for file in options.folder.glob("*/submission.json") if file.parent.name.startswith(tuple(options.only)))
+    folders = sorted(
+        file.parent for file in options.folder.glob("*/submission.json") if file.parent.name.startswith(tuple(options.only))
+    )
     if not folders:
         raise UserError(f"{options.folder}: has no folders with submission.json")
     lock = Lock()
@@ -91,11 +114,18 @@ def main():
         before, row = record["submissions"].get(folder.name, {}), grade(folder, options)
         is_same = all(before.get(key) == row[key] for key in ("verdict", "named")) and len(before["facts"]) == len(row["facts"])
         with lock:
-            record["submissions"][folder.name] = row | {key: before.get(key) if is_same else None for key in ("points", "name_is_right")}
+            record["submissions"][folder.name] = row | {
+                key: before.get(key) if is_same else None for key in ("points", "name_is_right")
+            }
             record.update({"commit": commit(), "submissions": dict(sorted(record["submissions"].items()))})
             write_json(path, record)
 
     done = {} if options.anew else {name: row.get("measured") for name, row in record["submissions"].items()}
-    run_all("submissions", grade_one, [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)], options.jobs)
+    run_all(
+        "submissions",
+        grade_one,
+        [folder for folder in folders if done.get(folder.name) != measured(folder, options.seed)],
+        options.jobs,
+    )
     if options.anew and options.only == [""]:
         write_json(path, stamped({name: record[name] for name in ("submissions", "commit")}))

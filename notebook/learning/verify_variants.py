@@ -22,21 +22,37 @@ SAMPLES_OF_CHECKS = 4  # a run takes this many times the samples of a run of ./l
 LIMITS = {"z": 4, "mean": 1, "noise": 1.4, "rays": 1.4}
 # What chapter.json must contain: scenes and options. Together, the scenes have everything that an estimator must handle.
 SETTINGS = {
-    (): [("cornell_box", "--max-path-length 5"), ("cornell_box", "--max-path-length 4 --only-path-length 2"),
-         (HERE / "under_the_sky.json", "--max-path-length 3"), ("textured", "--max-path-length 3"), ("glossy", "--max-path-length 4"),
-         ("furnace", "--max-path-length 4")],
-    ("bounces",): [("furnace", "--max-path-length 4 --strategy bounces"), ("heart_light", "--max-path-length 4"),
-                   ("cornell_box", "--max-path-length 3 --strategy bounces")],
-    ("--splitting-factor",): [(HERE / "under_the_sky.json", "--max-path-length 2 --splitting-factor 1"),
-                              ("cornell_box", "--max-path-length 1 --splitting-factor 3")],
+    (): [
+        ("cornell_box", "--max-path-length 5"),
+        ("cornell_box", "--max-path-length 4 --only-path-length 2"),
+        (HERE / "under_the_sky.json", "--max-path-length 3"),
+        ("textured", "--max-path-length 3"),
+        ("glossy", "--max-path-length 4"),
+        ("furnace", "--max-path-length 4"),
+    ],
+    ("bounces",): [
+        ("furnace", "--max-path-length 4 --strategy bounces"),
+        ("heart_light", "--max-path-length 4"),
+        ("cornell_box", "--max-path-length 3 --strategy bounces"),
+    ],
+    ("--splitting-factor",): [
+        (HERE / "under_the_sky.json", "--max-path-length 2 --splitting-factor 1"),
+        ("cornell_box", "--max-path-length 1 --splitting-factor 3"),
+    ],
     ("--splitting-factor", "--survival-cap"): [
-        ("cornell_box", "--max-path-length 40 --splitting-factor 3 --survival-cap 0.6 --roulette-start 2")],
+        ("cornell_box", "--max-path-length 40 --splitting-factor 3 --survival-cap 0.6 --roulette-start 2")
+    ],
     ("dielectrics",): [("glass", "--max-path-length 8"), ("glass", "--max-path-length 6 --only-path-length 3")],
     ("both", "--survival-cap"): [
-        ("plates", "--max-path-length 2"), ("heart_light", "--max-path-length 2 --strategy light"),
-        ("cornell_box", "--max-path-length 40 --survival-cap 0.6 --roulette-start 2")],
-    ("light_probe_sampling",): [("sunny", "--max-path-length 3"), ("studio", "--max-path-length 3"),
-                                ("textured", "--max-path-length 2 --strategy light")],
+        ("plates", "--max-path-length 2"),
+        ("heart_light", "--max-path-length 2 --strategy light"),
+        ("cornell_box", "--max-path-length 40 --survival-cap 0.6 --roulette-start 2"),
+    ],
+    ("light_probe_sampling",): [
+        ("sunny", "--max-path-length 3"),
+        ("studio", "--max-path-length 3"),
+        ("textured", "--max-path-length 2 --strategy light"),
+    ],
     ("microfacets",): [("microfacets", "--max-path-length 4"), ("microfacets", "--max-path-length 3 --strategy light")],
 }
 
@@ -58,8 +74,28 @@ def render(chapter, file, shader, scene, options, seeds):
     with tempfile.TemporaryDirectory() as folder:
         picture, report = Path(folder) / "a.exr", Path(folder) / "a.json"
         for seed in seeds:
-            command = [program_file(CHAPTERS[chapter]), scene, *Submission(chapter, file, shader).options, *options.split(), "--width", SIZE, "--height", SIZE, "--samples", samples_of(chapter),
-                       "--seed", seed, "--output", picture, "--report", report, "--headless", "--quiet", "--backend", "compute"]
+            command = [
+                program_file(CHAPTERS[chapter]),
+                scene,
+                *Submission(chapter, file, shader).options,
+                *options.split(),
+                "--width",
+                SIZE,
+                "--height",
+                SIZE,
+                "--samples",
+                samples_of(chapter),
+                "--seed",
+                seed,
+                "--output",
+                picture,
+                "--report",
+                report,
+                "--headless",
+                "--quiet",
+                "--backend",
+                "compute",
+            ]
             ended = run_program(command)
             if ended.returncode != 0:
                 sys.exit(f"error: {file} {scene}: {ended.stderr.strip()}")
@@ -81,10 +117,15 @@ def compare(images, rays, own_images, own_rays):
     whole = difference.mean() / np.sqrt(variance.mean() / SIZE**2 + 1e-13)
     # Geometric mean of the tiles' ratios: a few very bright samples would dominate the image's own ratio.
     mean = (images.mean(axis=0) + own_images.mean(axis=0)) / 2
-    noise, own_noise = [tile_means((x.var(axis=0, ddof=1) / (mean**2 + 0.01 * mean.mean() ** 2)).mean(axis=2))
-                        for x in (images, own_images)]
-    return {"z": max(abs(whole), np.abs(tiles).max()), "mean": difference.mean() / own_grey.mean(),
-            "noise": np.exp(np.log((noise + 1e-10) / (own_noise + 1e-10)).mean()), "rays": rays / own_rays}
+    noise, own_noise = [
+        tile_means((x.var(axis=0, ddof=1) / (mean**2 + 0.01 * mean.mean() ** 2)).mean(axis=2)) for x in (images, own_images)
+    ]
+    return {
+        "z": max(abs(whole), np.abs(tiles).max()),
+        "mean": difference.mean() / own_grey.mean(),
+        "noise": np.exp(np.log((noise + 1e-10) / (own_noise + 1e-10)).mean()),
+        "rays": rays / own_rays,
+    }
 
 
 def main():
@@ -101,7 +142,9 @@ def main():
         results = {}
         for setting in settings_of(chapter):
             if (chapter, *setting) not in own:
-                own[chapter, *setting] = render(chapter, own_shader(chapter), None, *setting, range(first + count, first + 2 * count))
+                own[chapter, *setting] = render(
+                    chapter, own_shader(chapter), None, *setting, range(first + count, first + 2 * count)
+                )
             rendered = render(chapter, file, shader, *setting, range(first, first + count))
             results[" ".join([Path(setting[0]).stem, setting[1]])] = compare(*rendered, *own[chapter, *setting])
         worst = {kind: max(results, key=lambda setting: abs(results[setting][kind])) for kind in LIMITS}

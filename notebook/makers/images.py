@@ -6,8 +6,18 @@ from colorsys import hsv_to_rgb
 from makers.shapes import add, cross, dot, normalize, scale
 
 # 3 x 5 pixel digits, row by row from the top.
-DIGITS = ["111101101101111", "010110010010111", "111001111100111", "111001111001111", "101101111001001",
-          "111100111001111", "111100111101111", "111001001001001", "111101111101111", "111101111001111"]
+DIGITS = [
+    "111101101101111",
+    "010110010010111",
+    "111001111100111",
+    "111001111001111",
+    "101101111001001",
+    "111100111001111",
+    "111100111101111",
+    "111001001001001",
+    "111101111101111",
+    "111101111001111",
+]
 
 
 def numbered_squares(x, y):
@@ -37,8 +47,14 @@ def panes(x, y):
     """96 x 160 pixels of coloured panes between dark bars."""
     white, red, yellow, blue = (0.84, 0.83, 0.79), (0.78, 0.2, 0.16), (0.86, 0.68, 0.2), (0.2, 0.34, 0.62)
     for left, top, right, bottom, paint in [
-            (0, 0, 60, 50, white), (60, 0, 96, 90, red), (0, 50, 26, 112, blue), (26, 50, 60, 112, yellow),
-            (60, 90, 96, 112, white), (0, 112, 70, 160, white), (70, 112, 96, 160, blue)]:
+        (0, 0, 60, 50, white),
+        (60, 0, 96, 90, red),
+        (0, 50, 26, 112, blue),
+        (26, 50, 60, 112, yellow),
+        (60, 90, 96, 112, white),
+        (0, 112, 70, 160, white),
+        (70, 112, 96, 160, blue),
+    ]:
         if left + 2 <= x < right - 2 and top + 2 <= y < bottom - 2:
             return paint
     return (0.22, 0.22, 0.22)
@@ -48,16 +64,18 @@ def sky(d):
     """A clear sky over hazy ground, with a sun so broad and mild that uniform sampling converges."""
     sun = normalize((-0.62, 0.5, 0.45))
     glow = 18 * math.exp(40 * (dot(sun, d) - 1))
-    up = max(0, d[1])**0.5
-    above = tuple((1 - up) * horizon + up * zenith + glow * s
-                  for horizon, zenith, s in zip((0.62, 0.7, 0.78), (0.1, 0.26, 0.7), (1, 0.86, 0.62)))
+    up = max(0, d[1]) ** 0.5
+    above = tuple(
+        (1 - up) * horizon + up * zenith + glow * s
+        for horizon, zenith, s in zip((0.62, 0.7, 0.78), (0.1, 0.26, 0.7), (1, 0.86, 0.62))
+    )
     ground = 1 / (1 + math.exp(200 * d[1]))  # a soft horizon
     return add(scale(1 - ground, above), scale(ground, (0.38, 0.33, 0.28)))
 
 
 def clear_sky(d):
     """A clear sky with a small sun, 10^5 times as bright: its few texels contribute half of the light."""
-    up = max(0, d[1])**0.5
+    up = max(0, d[1]) ** 0.5
     above = tuple((1 - up) * horizon + up * zenith for horizon, zenith in zip((0.5, 0.6, 0.72), (0.08, 0.2, 0.55)))
     below = (0.2, 0.18, 0.15)
     blend = 1 / (1 + math.exp(-80 * d[1]))  # a soft horizon
@@ -68,6 +86,7 @@ def clear_sky(d):
 
 def softboxes(d):
     """A dark studio: a large softbox above on the left, a narrow one on the right, and a faint grey everywhere."""
+
     def softbox(centre, across, width, height):
         toward, right = normalize(centre), normalize(across)
         distance = dot(d, toward)

@@ -38,8 +38,12 @@ def hall():
             for begin, end in ends:
                 walls.append(box("wall", (at - 0.05, 0, begin), (at + 0.05, 3, end)))
                 walls.append(box("red" if j % 2 else "blue", (begin, 0, at - 0.05), (end, 3, at + 0.05)))
-    blocks = [box("floor", (4 * i + x, 0, 4 * j + z), (4 * i + x + 0.5, h, 4 * j + z + 0.5))
-              for i in range(4) for j in range(4) for x, z, h in ((0.7, 0.8, 0.9), (2.7, 2.2, 1.3))]
+    blocks = [
+        box("floor", (4 * i + x, 0, 4 * j + z), (4 * i + x + 0.5, h, 4 * j + z + 0.5))
+        for i in range(4)
+        for j in range(4)
+        for x, z, h in ((0.7, 0.8, 0.9), (2.7, 2.2, 1.3))
+    ]
     return [floor, ceiling, *walls, *blocks]
 
 
@@ -53,7 +57,7 @@ def lamp_cluster():
         side = normalize(cross(normal, (0.3, 0.5, 0.8)))
         u, v = scale(0.02, side), scale(0.02, cross(normal, side))
         corners = [add(centre, add(scale(a, u), scale(b, v))) for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-        add_quad(parts[int(POWERS * numbers.random()**2)], *corners)
+        add_quad(parts[int(POWERS * numbers.random() ** 2)], *corners)
     return [part for part in parts if part.positions]
 
 
@@ -92,8 +96,10 @@ def encode_scene(description, placements, camera, size):
     """One line for each instance."""
     lines = ",\n".join(f"        {json.dumps(placement)}" for placement in placements)
     width, height = size
-    return (f'{{\n    "description": "{description}",\n    "meshes": [\n{lines}\n    ],\n    "camera": {json.dumps(camera)},\n'
-            f'    "width": {width},\n    "height": {height}\n}}\n').encode()
+    return (
+        f'{{\n    "description": "{description}",\n    "meshes": [\n{lines}\n    ],\n    "camera": {json.dumps(camera)},\n'
+        f'    "width": {width},\n    "height": {height}\n}}\n'
+    ).encode()
 
 
 def place(mesh, translation, degrees=0, factor=1):
@@ -117,7 +123,16 @@ def city_scene():
     placements = [{"file": "../meshes/ground.obj"}]
     for i in range(-7, 8):
         for j in range(-7, 8):
-            placements.append(place(numbers.choice(["tower", "house"]), (4 * i, 0, 4 * j), 90 * numbers.randrange(4), numbers.choice([0.8, 1, 1.2])))
+            placements.append(
+                place(
+                    numbers.choice(["tower", "house"]),
+                    (4 * i, 0, 4 * j),
+                    90 * numbers.randrange(4),
+                    numbers.choice([0.8, 1, 1.2]),
+                )
+            )
             placements.append(place("street_lamp", (4 * i + 1.9, 0, 4 * j + 1.9)))
     camera = {"position": [2, 1.6, 17], "target": [1.4, 1.3, 0], "up": [0, 1, 0], "vertical_fov": 50}
-    return encode_scene("A city at night: 225 buildings with lit windows, more than 100,000 emissive triangles", placements, camera, (512, 512))
+    return encode_scene(
+        "A city at night: 225 buildings with lit windows, more than 100,000 emissive triangles", placements, camera, (512, 512)
+    )

@@ -14,14 +14,23 @@ from PIL import Image
 from project import ROOT, Parser, UserError, write_bytes
 
 MESHES = {  # name -> parts
-    "torus": lambda: [torus("porcelain")], "sphere": lambda: [sphere("white")],
+    "torus": lambda: [torus("porcelain")],
+    "sphere": lambda: [sphere("white")],
     "numbered_ball": lambda: [sphere("numbered_squares", times_around=2)],
-    "rough_balls": lambda: (row_of_balls([f"metal_{i}" for i in range(5)], 0.3, 0.66, -0.35)
-                            + row_of_balls([f"plastic_{i}" for i in range(5)], 0.22, 0.56, 0.45)),
-    "hall": lamps.hall, "lamp_cluster": lamps.lamp_cluster, "tower": lambda: lamps.building(30, 7), "house": lambda: lamps.building(16, 6),
-    "street_lamp": lamps.street_lamp, "ground": lamps.ground,
-    "rounded_cylinder": lambda: [rounded_cylinder("white")], "heart": heart,
-    "orange_pumpkin": lambda: pumpkin(10, 0.74), "green_pumpkin": lambda: pumpkin(14, 0.6),
+    "rough_balls": lambda: (
+        row_of_balls([f"metal_{i}" for i in range(5)], 0.3, 0.66, -0.35)
+        + row_of_balls([f"plastic_{i}" for i in range(5)], 0.22, 0.56, 0.45)
+    ),
+    "hall": lamps.hall,
+    "lamp_cluster": lamps.lamp_cluster,
+    "tower": lambda: lamps.building(30, 7),
+    "house": lambda: lamps.building(16, 6),
+    "street_lamp": lamps.street_lamp,
+    "ground": lamps.ground,
+    "rounded_cylinder": lambda: [rounded_cylinder("white")],
+    "heart": heart,
+    "orange_pumpkin": lambda: pumpkin(10, 0.74),
+    "green_pumpkin": lambda: pumpkin(14, 0.6),
 }
 SCENES = {"lamps": lamps.lamps_scene, "city": lamps.city_scene}
 TEXTURES = {"numbered_squares": (256, 256), "planks": (300, 200), "panes": (96, 160)}  # width and height
@@ -78,21 +87,23 @@ def encode_hdr(width, height, radiance):
             azimuth = math.pi - 2 * math.pi * ((x + 0.5) / width - 0.5)
             rgb = radiance(direction(math.pi * (y + 0.5) / height, azimuth))
             exponent = math.frexp(max(rgb))[1]
-            pixels.append([min(255, round(c * 2**(8 - exponent))) for c in rgb] + [exponent + 128])
+            pixels.append([min(255, round(c * 2 ** (8 - exponent))) for c in rgb] + [exponent + 128])
         content += struct.pack(">BBH", 2, 2, width)  # each row is four planes, in runs of at most 128 bytes
         for plane in zip(*pixels):
-            for run in (plane[k:k + 128] for k in range(0, width, 128)):
+            for run in (plane[k : k + 128] for k in range(0, width, 128)):
                 content += bytes([len(run), *run])
     return content
 
 
 def make_files():
     """Path below assets/ -> bytes."""
-    return ({f"meshes/{name}.obj": encode_obj(name, parts()) for name, parts in MESHES.items()}
-            | {f"scenes/{name}.json": scene() for name, scene in SCENES.items()}
-            | {f"textures/{name}.png": encode_png(*size, getattr(images, name)) for name, size in TEXTURES.items()}
-            | {f"volumes/{name}.vol": volumes.encode_vol(getattr(volumes, name)()) for name in VOLUMES}
-            | {f"light_probes/{name}.hdr": encode_hdr(*size, getattr(images, name)) for name, size in LIGHT_PROBES.items()})
+    return (
+        {f"meshes/{name}.obj": encode_obj(name, parts()) for name, parts in MESHES.items()}
+        | {f"scenes/{name}.json": scene() for name, scene in SCENES.items()}
+        | {f"textures/{name}.png": encode_png(*size, getattr(images, name)) for name, size in TEXTURES.items()}
+        | {f"volumes/{name}.vol": volumes.encode_vol(getattr(volumes, name)()) for name in VOLUMES}
+        | {f"light_probes/{name}.hdr": encode_hdr(*size, getattr(images, name)) for name, size in LIGHT_PROBES.items()}
+    )
 
 
 def is_same(file, content):

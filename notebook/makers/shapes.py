@@ -4,12 +4,28 @@ import math
 from dataclasses import dataclass, field
 
 
-def add(a, b): return tuple(x + y for x, y in zip(a, b))
-def subtract(a, b): return tuple(x - y for x, y in zip(a, b))
-def scale(s, a): return tuple(s * x for x in a)
-def dot(a, b): return sum(x * y for x, y in zip(a, b))
-def cross(a, b): return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-def normalize(a): return scale(1 / math.hypot(*a), a)
+def add(a, b):
+    return tuple(x + y for x, y in zip(a, b))
+
+
+def subtract(a, b):
+    return tuple(x - y for x, y in zip(a, b))
+
+
+def scale(s, a):
+    return tuple(s * x for x in a)
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def normalize(a):
+    return scale(1 / math.hypot(*a), a)
 
 
 def direction(theta, phi):
@@ -21,6 +37,7 @@ def direction(theta, phi):
 class Part:
     """Triangles of one material. Normals, if any, correspond to positions; texture coordinates have their own triangles, because
     a texture has a seam where the surface has none."""
+
     material: str
     positions: list = field(default_factory=list)
     triangles: list = field(default_factory=list)
@@ -35,8 +52,7 @@ def globe(material, columns, rows, point):
     Texture coordinates are (t, 1 - s); at a pole each triangle has its own, in the middle of its t."""
     rings = [point(i / rows, j / columns) for i in range(1, rows) for j in range(columns)]
     part = Part(material, [point(0, 0), *rings, point(1, 0)])
-    part.texture_coordinates = [(j / columns, 1 - i / rows)
-                                for i in range(1, rows) for j in range(columns + 1)]
+    part.texture_coordinates = [(j / columns, 1 - i / rows) for i in range(1, rows) for j in range(columns + 1)]
     part.texture_coordinates += [((j + 0.5) / columns, v) for v in (1, 0) for j in range(columns)]  # poles
 
     def vertex(i, j):
@@ -70,8 +86,9 @@ def sphere(material, times_around=0, columns=64):
 
 def rounded_cylinder(material, columns=64, rows=48, power=0.25):
     """A cylinder about the Y axis with round edges, of radius and half height 1: a sphere whose sine and cosine have that power."""
+
     def curve(s, exponent):
-        return math.sin(math.pi * s)**exponent, math.copysign(abs(math.cos(math.pi * s))**exponent, math.cos(math.pi * s))
+        return math.sin(math.pi * s) ** exponent, math.copysign(abs(math.cos(math.pi * s)) ** exponent, math.cos(math.pi * s))
 
     def around(t, radius, height):
         return (radius * math.sin(2 * math.pi * t), height, radius * math.cos(2 * math.pi * t))
@@ -122,18 +139,19 @@ def smooth(part):
 def heart_radius(d):
     """Distance from the centre to Taubin's heart (x^2 + y^2 + 9/4 z^2 - 1)^3 = x^2 y^3 + 9/80 z^2 y^3 in the
     unit direction d. Along a ray it is a r^2 - 1 = b r^(5/3), which has one positive solution."""
-    a = d[0]**2 + d[1]**2 + 9 / 4 * d[2]**2
-    b = (d[0]**2 + 9 / 80 * d[2]**2)**(1 / 3) * d[1]
+    a = d[0] ** 2 + d[1] ** 2 + 9 / 4 * d[2] ** 2
+    b = (d[0] ** 2 + 9 / 80 * d[2] ** 2) ** (1 / 3) * d[1]
     low, high = 0, 2
     for _ in range(50):
         r = (low + high) / 2
-        low, high = (r, high) if a * r * r - 1 < b * r**(5 / 3) else (low, r)
+        low, high = (r, high) if a * r * r - 1 < b * r ** (5 / 3) else (low, r)
     return r
 
 
 def heart():
     """A heart in parts glow_0 to glow_15: triangles that face +Z glow whiter, in 16 steps. Rings lie closest together at the cleft, where
     the surface is steep: areas differ by a factor of 1,600."""
+
     def point(s, t):
         d = direction(math.pi * s**1.6, 2 * math.pi * t)
         return scale(heart_radius(d), d)
@@ -151,18 +169,19 @@ def heart():
 
 def pumpkin(grooves, height):
     """A pumpkin and its stem, 20,056 triangles. Its grooves are twisted and its stem is bent, so its mirror image differs."""
+
     def skin(s, t):
         theta, phi = math.pi * s, 2 * math.pi * t + 0.3 * math.cos(math.pi * s)
         x, y, z = direction(theta, phi)
         side = math.sin(theta)
-        groove = side * (0.17 * math.cos(grooves / 2 * phi)**8 + 0.03 * math.sin(2 * phi + 1))
-        dimple = 0.27 * math.exp(-(side / 0.35)**2) * y
+        groove = side * (0.17 * math.cos(grooves / 2 * phi) ** 8 + 0.03 * math.sin(2 * phi + 1))
+        dimple = 0.27 * math.exp(-((side / 0.35) ** 2)) * y
         return ((1 - groove) * x, height * y * (1 - 0.4 * groove) - dimple, (1 - groove) * z)
 
     def stem(s, t):  # bent, wider towards its lower end inside the skin
         along = math.cos(math.pi / 2 * s)
         x, _, z = direction(math.pi / 2, 2 * math.pi * t)
-        width = (0.1 + 0.12 * (1 - along)**2) * math.sqrt(math.sin(math.pi * s))
+        width = (0.1 + 0.12 * (1 - along) ** 2) * math.sqrt(math.sin(math.pi * s))
         width *= 1 + 0.12 * math.cos(10 * math.pi * t)
         return (width * x + 0.3 * along**3, height - 0.4 + 0.55 * along, width * z + 0.1 * along**2)
 

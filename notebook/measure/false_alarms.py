@@ -25,12 +25,17 @@ def run(seed, folder):
     failed = []
     for program in PROGRAMS:
         report = Path(folder) / f"{seed}.{program}.json"
-        test_report.run(BINARIES / program, report, "--gtest_brief=1", f"--gtest_filter=-{test_report.ONLY_IN_ALL}", env=environment, stdout=sys.stderr)
+        test_report.run(
+            BINARIES / program,
+            report,
+            "--gtest_brief=1",
+            f"--gtest_filter=-{test_report.ONLY_IN_ALL}",
+            env=environment,
+            stdout=sys.stderr,
+        )
         # A test's power varies a little with the seed; that says nothing about the estimator.
         failed += [
-            test.full_name
-            for test in test_report.read(report)[0]
-            if any("too weak" not in failure for failure in test.failures)
+            test.full_name for test in test_report.read(report)[0] if any("too weak" not in failure for failure in test.failures)
         ]
     return failed, [line.split("\t") for line in file.read_text(encoding="utf-8").splitlines()]
 

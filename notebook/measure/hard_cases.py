@@ -12,6 +12,7 @@ from project import BINARIES, ROOT, Parser, UserError, write_json
 from tables.records import RECORDS
 from tables.sources import stamped
 
+
 def run_python(test):
     """Runs a command line test; returns what it recorded."""
     with tempfile.NamedTemporaryFile("r", suffix=".jsonl") as record:

@@ -22,8 +22,20 @@ SAMPLES = 64
 def seconds_of(size, options, *outputs):
     """Seconds of a whole command."""
     started = time.monotonic()
-    subprocess.run([program_file(CHAPTERS[10]), "cornell_box", "--headless", "--quiet", f"--width={size[0]}", f"--height={size[1]}", f"--samples={SAMPLES}",
-                    f"--backend={options.backend}", *outputs], check=True)
+    subprocess.run(
+        [
+            program_file(CHAPTERS[10]),
+            "cornell_box",
+            "--headless",
+            "--quiet",
+            f"--width={size[0]}",
+            f"--height={size[1]}",
+            f"--samples={SAMPLES}",
+            f"--backend={options.backend}",
+            *outputs,
+        ],
+        check=True,
+    )
     return time.monotonic() - started
 
 
@@ -31,7 +43,9 @@ def main():
     parser = Parser("./lab notebook large_picture", __doc__)
     parser.add_argument("--runs", type=number(int, 1), default=5, help="default: 5")
     parser.add_argument("--backend", default="auto", help="default: auto")
-    parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/large_picture/nvidia_h200.json", metavar="FILE.json")
+    parser.add_argument(
+        "--output", type=Path, default=ROOT / "notebook/records/large_picture/nvidia_h200.json", metavar="FILE.json"
+    )
     options, started, found = parser.parse_args(), time.monotonic(), []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -39,9 +53,15 @@ def main():
         seconds_of(LARGE, options, *outputs["EXR"], f"--report={folder / 'report.json'}")  # fills caches, too
         report = read_json(folder / "report.json")
         for run in range(options.runs):
-            found.append({"start": seconds_of(SMALL, options, *outputs["EXR and PNG"])} | {kind: seconds_of(LARGE, options, *outputs[kind]) for kind in FILES})
+            found.append(
+                {"start": seconds_of(SMALL, options, *outputs["EXR and PNG"])}
+                | {kind: seconds_of(LARGE, options, *outputs[kind]) for kind in FILES}
+            )
             show_progress("large_picture", run + 1, options.runs, started)
     seconds = {part: median(run[part] for run in found) for part in found[0]}
     start, rendering = seconds.pop("start"), report["rows"][-1]["seconds"]
     rows = {kind: {"seconds": whole, "beyond start and rendering": whole - start - rendering} for kind, whole in seconds.items()}
-    write_json(options.output, stamped({"device": report["device"], "samples": SAMPLES, "start": start, "rendering": rendering, "files": rows}))
+    write_json(
+        options.output,
+        stamped({"device": report["device"], "samples": SAMPLES, "start": start, "rendering": rendering, "files": rows}),
+    )

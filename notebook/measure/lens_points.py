@@ -24,9 +24,24 @@ APERTURES, SAMPLES = (0.03, 0.1, 0.3), 1024
 def measure(shader, aperture, seed, folder):
     """Mean squared error by samples, of one picture."""
     report = folder / "report.json"
-    subprocess.run([program_file(CHAPTER), "focus", "--headless", "--quiet", "--width=150", "--height=100", f"--samples={SAMPLES}", f"--seed={seed}",
-                    "--max-path-length=1", f"--aperture-diameter={aperture}", f"--shader={SHADER}={shader}", f"--output={folder / 'picture.exr'}",
-                    f"--report={report}"], check=True)
+    subprocess.run(
+        [
+            program_file(CHAPTER),
+            "focus",
+            "--headless",
+            "--quiet",
+            "--width=150",
+            "--height=100",
+            f"--samples={SAMPLES}",
+            f"--seed={seed}",
+            "--max-path-length=1",
+            f"--aperture-diameter={aperture}",
+            f"--shader={SHADER}={shader}",
+            f"--output={folder / 'picture.exr'}",
+            f"--report={report}",
+        ],
+        check=True,
+    )
     content = read_json(report)
     return content["device"], {str(row["samples"]): row["mse"] for row in content["rows"] if row["samples"] >= 16}
 

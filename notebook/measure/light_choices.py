@@ -31,12 +31,31 @@ def main():
             found = {choice: {"rel_mse": [], "seconds": []} for choice in CHOICES}
             for run in range(options.runs):
                 for choice, numbers in found.items():
-                    subprocess.run([program_file(CHAPTER), scene, "--headless", "--quiet", f"--backend={options.backend}",
-                                    f"--width={SIZE}", f"--height={SIZE}", f"--samples={options.samples}", f"--seed={1 + run}", f"--light-choice={choice}",
-                                    f"--output={folder}/picture.exr", f"--report={report}"], check=True)
+                    subprocess.run(
+                        [
+                            program_file(CHAPTER),
+                            scene,
+                            "--headless",
+                            "--quiet",
+                            f"--backend={options.backend}",
+                            f"--width={SIZE}",
+                            f"--height={SIZE}",
+                            f"--samples={options.samples}",
+                            f"--seed={1 + run}",
+                            f"--light-choice={choice}",
+                            f"--output={folder}/picture.exr",
+                            f"--report={report}",
+                        ],
+                        check=True,
+                    )
                     content = read_json(report)
                     numbers["rel_mse"].append(content["rows"][-1]["rel_mse"])
                     numbers["seconds"].append(content["rows"][-1][seconds])
                 show_progress("light_choices", len(rows) * options.runs + run + 1, len(SCENES) * options.runs, started)
             rows.append({"scene": scene, **found})
-    write_json(options.output, stamped({"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}))
+    write_json(
+        options.output,
+        stamped(
+            {"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}
+        ),
+    )

@@ -14,11 +14,18 @@ from project import ROOT, Parser, number, program_file, read_json, show_progress
 from tables.sources import stamped
 
 CHAPTER = "13_media"
-WAYS = {"both": [], "light": ["--strategy=light"], "bounces": ["--strategy=bounces"], "equiangular": ["--distance-sampling=equiangular"]}
+WAYS = {
+    "both": [],
+    "light": ["--strategy=light"],
+    "bounces": ["--strategy=bounces"],
+    "equiangular": ["--distance-sampling=equiangular"],
+}
 ONCE = ["--only-path-length=1", "--max-path-length=1"]
-LIGHT = {"scattered once": ONCE,
-         "scattered once, beside the lamp": [*ONCE, "--camera-target=0.2,1,-1.1", "--vertical-fov=6"],
-         "all light": ["--max-path-length=5", f"--reference={ROOT / 'assets/references/fog_5.exr'}"]}
+LIGHT = {
+    "scattered once": ONCE,
+    "scattered once, beside the lamp": [*ONCE, "--camera-target=0.2,1,-1.1", "--vertical-fov=6"],
+    "all light": ["--max-path-length=5", f"--reference={ROOT / 'assets/references/fog_5.exr'}"],
+}
 
 
 def main():
@@ -32,9 +39,24 @@ def main():
             products = {way: [] for way in WAYS}
             for run in range(options.runs):
                 for way, found in products.items():
-                    subprocess.run([program_file(CHAPTER), "fog", "--headless", "--quiet", "--backend=native", "--width=192", "--height=128",
-                                    "--samples=64", f"--seed={1 + run}", *WAYS[way], *chosen,
-                                    f"--output={folder}/picture.exr", f"--report={report}"], check=True)
+                    subprocess.run(
+                        [
+                            program_file(CHAPTER),
+                            "fog",
+                            "--headless",
+                            "--quiet",
+                            "--backend=native",
+                            "--width=192",
+                            "--height=128",
+                            "--samples=64",
+                            f"--seed={1 + run}",
+                            *WAYS[way],
+                            *chosen,
+                            f"--output={folder}/picture.exr",
+                            f"--report={report}",
+                        ],
+                        check=True,
+                    )
                     row = read_json(report)["rows"][-1]
                     found.append(row["mse"] * row["cpu_seconds"])
                 show_progress("media_strategies", len(rows) * options.runs + run + 1, len(LIGHT) * options.runs, started)

@@ -13,7 +13,13 @@ import sys
 
 from project import CHAPTERS, program_file
 
-CASES = [*(f"{chapter}:cornell_box" for chapter in (1, 3, 5, 7, 9, 10)), "7:heart_light", "10:heart_light", "6:clear_glass", "10:clear_glass"]
+CASES = [
+    *(f"{chapter}:cornell_box" for chapter in (1, 3, 5, 7, 9, 10)),
+    "7:heart_light",
+    "10:heart_light",
+    "6:clear_glass",
+    "10:clear_glass",
+]
 
 
 WAYS = {"native": ("native", {}), "compute": ("compute", {}), "one by one": ("native", {"LAB_LANES": "0"})}
@@ -22,8 +28,18 @@ WAYS = {"native": ("native", {}), "compute": ("compute", {}), "one by one": ("na
 def cpu_seconds(case, way, samples, device):
     backend, environment = WAYS[way]
     chapter, scene = case.split(":")
-    command = [program_file(CHAPTERS[int(chapter)]), scene, "--headless", "--quiet", "--width=256", "--height=256", f"--samples={samples}",
-               f"--backend={backend}", f"--device={device}", f"--output={os.devnull}.exr" if os.name == "nt" else "--output=/tmp/native_speed.exr"]
+    command = [
+        program_file(CHAPTERS[int(chapter)]),
+        scene,
+        "--headless",
+        "--quiet",
+        "--width=256",
+        "--height=256",
+        f"--samples={samples}",
+        f"--backend={backend}",
+        f"--device={device}",
+        f"--output={os.devnull}.exr" if os.name == "nt" else "--output=/tmp/native_speed.exr",
+    ]
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, env=os.environ | environment)
     _, status, usage = os.wait4(process.pid, 0)
     if status:
@@ -43,7 +59,14 @@ def main():
             cpu_seconds(case, way, 1, options.device)
         ratios = {way: [] for way in WAYS if way != "native"}
         for _ in range(options.runs):
-            seconds = {way: cpu_seconds(case, way, options.samples, options.device) - cpu_seconds(case, way, 1, options.device) for way in WAYS}
+            seconds = {
+                way: cpu_seconds(case, way, options.samples, options.device) - cpu_seconds(case, way, 1, options.device)
+                for way in WAYS
+            }
             for way, all_of_it in ratios.items():
                 all_of_it.append(seconds[way] / seconds["native"])
-        print(f"{case:18} " + "   ".join(f"{way} {statistics.median(r):.2f} ({min(r):.2f} to {max(r):.2f})" for way, r in ratios.items()), flush=True)
+        print(
+            f"{case:18} "
+            + "   ".join(f"{way} {statistics.median(r):.2f} ({min(r):.2f} to {max(r):.2f})" for way, r in ratios.items()),
+            flush=True,
+        )

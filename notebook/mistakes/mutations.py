@@ -32,8 +32,23 @@ GOES_ON = True
 ENDLESS = 5  # seconds for a point of an experiment, most of which take a fifth of one: many changes make a loop endless
 UNCHANGED = Path(__file__).with_name("unchanged.json")  # chapter's name -> variant -> why it changes nothing
 COUNTERPARTS = {"sin": "cos", "cos": "sin", "min": "max", "max": "min", "x": "y", "y": "x", "z": "y", "xy": "yz", "true": "false"}
-INVERSE = {" + ": " - ", " - ": " + ", " * ": " / ", " / ": " * ", " += ": " -= ", " *= ": " /= ", " /= ": " *= ", " < ": " >= ", " > ": " <= ",
-           " <= ": " > ", " >= ": " < ", " == ": " != ", " != ": " == ", " && ": " || ", " || ": " && "}
+INVERSE = {
+    " + ": " - ",
+    " - ": " + ",
+    " * ": " / ",
+    " / ": " * ",
+    " += ": " -= ",
+    " *= ": " /= ",
+    " /= ": " *= ",
+    " < ": " >= ",
+    " > ": " <= ",
+    " <= ": " > ",
+    " >= ": " < ",
+    " == ": " != ",
+    " != ": " == ",
+    " && ": " || ",
+    " || ": " && ",
+}
 SYMMETRIC = ("dot", "min", "max")  # in their arguments
 OPERAND = r"[-!]?(?:\w[\w.]*)?"
 
@@ -51,7 +66,7 @@ def closing(text, begin):
 def operand_after(text, begin):
     """The end of the operand of * that begins here."""
     end = begin + len(re.match(OPERAND, text[begin:])[0])
-    return closing(text, end) + 1 if text[end:end + 1] == "(" else end
+    return closing(text, end) + 1 if text[end : end + 1] == "(" else end
 
 
 def operand_before(text, end):
@@ -75,7 +90,9 @@ def arguments(text, begin):
 def changes(text):
     """(begin, end, replacement) of each change of a piece of a shader."""
     text = re.sub(r"//.*", lambda comment: " " * len(comment[0]), text)
-    for statement in re.finditer(r"(?:^|(?<=[;{}\n]))\s*((?:if \(|for \(|[\w.]+ [-+*/]?= |\w+\()[^;{]*;)|(?<=\) )(\w[^;()]*;)", text):
+    for statement in re.finditer(
+        r"(?:^|(?<=[;{}\n]))\s*((?:if \(|for \(|[\w.]+ [-+*/]?= |\w+\()[^;{]*;)|(?<=\) )(\w[^;()]*;)", text
+    ):
         place = 1 if statement[1] else 2
         yield *statement.span(place), ";"
     for condition in re.finditer(r"if (?=\()", text):
@@ -93,7 +110,9 @@ def changes(text):
         yield *sign.span(), ""
     for literal in re.finditer(r"(?<![\w.])(\d+\.\d+|\d+u)(?!\w)", text):
         digits = literal[0].rstrip("u")
-        yield *literal.span(), f"{2 * float(digits) or 1.0:g}.0".replace(".0.0", ".0").replace("5.0", "5") if "." in digits else f"{int(digits) + 1}u"
+        yield *literal.span(), f"{2 * float(digits) or 1.0:g}.0".replace(".0.0", ".0").replace(
+            "5.0", "5"
+        ) if "." in digits else f"{int(digits) + 1}u"
     for word in re.finditer(r"\b[a-z]\w*\b", text):
         if word[0] in COUNTERPARTS and (text[word.start() - 1] == "." or word[0] not in "xyz"):
             yield *word.span(), COUNTERPARTS[word[0]]
@@ -120,7 +139,7 @@ def mutations(chapter):
         name = " ".join(f"{line}: {solution[begin:end].strip()} -> {replacement.strip() or 'nothing'}".split())
         while name in found:  # the same again in this line
             name += "'"
-        changed = text[:start + begin] + replacement + text[start + end:]
+        changed = text[: start + begin] + replacement + text[start + end :]
         if changed != text and changed not in found.values():
             found[name] = changed
     return found
@@ -173,12 +192,25 @@ def main():
     parser.add_argument("--jobs", type=number(int, 1), default=1, help="shaders that are graded at a time; default: 1")
     parser.add_argument("--list", action="store_true", help="only print the changes")
     parser.add_argument("--all-experiments", action="store_true", help="render those that do not decide as well")
-    parser.add_argument("--output", type=Path, default=ROOT / "output/mutations.json", metavar="FILE", help="the record; default: output/mutations.json")
+    parser.add_argument(
+        "--output",
+        type=Path,
+        default=ROOT / "output/mutations.json",
+        metavar="FILE",
+        help="the record; default: output/mutations.json",
+    )
     add_device_options(parser)
     options = parser.parse_args()
     grading.stay_in_the_driver(options.backend)
-    settings = {"backend": options.backend, "device": options.device, "time_limit": 20, "runs": grading.RUNS, "samples": None,
-                "first_seed": grading.first_seed(0), "is_quiet": True}
+    settings = {
+        "backend": options.backend,
+        "device": options.device,
+        "time_limit": 20,
+        "runs": grading.RUNS,
+        "samples": None,
+        "first_seed": grading.first_seed(0),
+        "is_quiet": True,
+    }
     everything = {(chapter, name): text for chapter in options.chapters for name, text in mutations(chapter).items()}
     if options.list:
         print("\n".join(f"{chapter} {name}" for chapter, name in everything))
@@ -200,6 +232,10 @@ def main():
     unchanged = read_json(UNCHANGED) if UNCHANGED.exists() else {}
     for chapter in options.chapters:
         answers = {name: record[f"{chapter} {name}"] for number, name in everything if number == chapter}
-        counted = {name: answer for name, answer in answers.items() if answer["compiles"] and name not in unchanged.get(name_of(chapter), {})}
+        counted = {
+            name: answer
+            for name, answer in answers.items()
+            if answer["compiles"] and name not in unchanged.get(name_of(chapter), {})
+        }
         missed = [name for name, answer in counted.items() if not is_found(answer)]
         print(f"chapter {chapter}: {len(counted) - len(missed)} of {len(counted)} found", *missed, sep="\n  ")

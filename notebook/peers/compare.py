@@ -28,9 +28,12 @@ SCENES = {
     "lamps": (COUNTS, "many_lights"),
 }
 PEERS = {  # case: (--variant, --sampler)
-    "Mitsuba LLVM": ("llvm_ad_rgb", "independent"), "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
-    "Cycles, light tree": ("cycles", "light_tree"), "Cycles, no light tree": ("cycles", "no_light_tree"),
-    "LuxCore, Sobol": ("luxcore", "sobol"), "LuxCore, random": ("luxcore", "random"),
+    "Mitsuba LLVM": ("llvm_ad_rgb", "independent"),
+    "Mitsuba LLVM, multijitter": ("llvm_ad_rgb", "multijitter"),
+    "Cycles, light tree": ("cycles", "light_tree"),
+    "Cycles, no light tree": ("cycles", "no_light_tree"),
+    "LuxCore, Sobol": ("luxcore", "sobol"),
+    "LuxCore, random": ("luxcore", "random"),
 }
 
 
@@ -48,8 +51,11 @@ def peer_case(scene, reference, name):
 
 
 def all_cases():
-    return [case for scene, reference in find_references(SCENES)
-            for case in (our_case(scene, reference), *(peer_case(scene, reference, name) for name in PEERS))]
+    return [
+        case
+        for scene, reference in find_references(SCENES)
+        for case in (our_case(scene, reference), *(peer_case(scene, reference, name) for name in PEERS))
+    ]
 
 
 def render(case, seed):

@@ -86,24 +86,42 @@ def add_fog(fog):
     tree = world.node_tree
     tree.nodes.clear()
     albedo, density = np.broadcast_to(fog["albedo"], 3), float(fog["extinction"])
-    parts = (new_node(tree, "VolumeScatter", Color=colour(albedo), Density=density, Anisotropy=float(fog["anisotropy"])),
-             new_node(tree, "VolumeAbsorption", Color=colour(albedo), Density=density))
+    parts = (
+        new_node(tree, "VolumeScatter", Color=colour(albedo), Density=density, Anisotropy=float(fog["anisotropy"])),
+        new_node(tree, "VolumeAbsorption", Color=colour(albedo), Density=density),
+    )
     tree.links.new(new_node(tree, "OutputWorld").inputs["Volume"], added(tree, *parts).outputs[0])
 
 
 def choose_settings(scene, options):
     """No clamping, adaptive sampling, denoising nor blurred caustics; a box filter of a pixel; paths of our length."""
     render, cycles = scene.render, scene.cycles
-    render.engine, render.resolution_x, render.resolution_y, render.resolution_percentage = "CYCLES", options.width, options.height, 100
+    render.engine, render.resolution_x, render.resolution_y, render.resolution_percentage = (
+        "CYCLES",
+        options.width,
+        options.height,
+        100,
+    )
     render.use_persistent_data, render.threads_mode, render.threads = True, "FIXED", len(os.sched_getaffinity(0))
     render.use_compositing = render.use_sequencer = False
     render.image_settings.file_format, render.image_settings.color_mode = "OPEN_EXR", "RGB"
     render.image_settings.color_depth, render.image_settings.exr_codec = "32", "ZIP"
     bounces = options.max_path_length - 1  # Cycles does not count direct light
     for name, value in {
-        "device": "CPU", "use_adaptive_sampling": False, "use_denoising": False, "sample_clamp_direct": 0.0, "sample_clamp_indirect": 0.0,
-        "pixel_filter_type": "BOX", "filter_width": 1.0, "blur_glossy": 0.0, "caustics_reflective": True, "caustics_refractive": True,
-        "max_bounces": bounces, "min_light_bounces": 0, "sampling_pattern": "TABULATED_SOBOL", "use_auto_tile": False,
+        "device": "CPU",
+        "use_adaptive_sampling": False,
+        "use_denoising": False,
+        "sample_clamp_direct": 0.0,
+        "sample_clamp_indirect": 0.0,
+        "pixel_filter_type": "BOX",
+        "filter_width": 1.0,
+        "blur_glossy": 0.0,
+        "caustics_reflective": True,
+        "caustics_refractive": True,
+        "max_bounces": bounces,
+        "min_light_bounces": 0,
+        "sampling_pattern": "TABULATED_SOBOL",
+        "use_auto_tile": False,
         "use_light_tree": options.sampler == "light_tree",
         **{f"{kind}_bounces": UNLIMITED for kind in ("diffuse", "glossy", "transmission", "volume")},
     }.items():

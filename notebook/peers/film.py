@@ -30,14 +30,19 @@ class Film:
         self.total = frame
 
     def row(self, frame):
-        return {"samples": frame.samples, "seconds": frame.seconds, "cpu_seconds": frame.cpu_seconds,
-                "mean": frame.image.mean(axis=(0, 1)).tolist(), "rel_mse": rel_mse(frame.image, self.reference) if self.reference else None}
+        return {
+            "samples": frame.samples,
+            "seconds": frame.seconds,
+            "cpu_seconds": frame.cpu_seconds,
+            "mean": frame.image.mean(axis=(0, 1)).tolist(),
+            "rel_mse": rel_mse(frame.image, self.reference) if self.reference else None,
+        }
 
 
 def growing_rows(film, options):
     """Rows of one picture after 1, 2, 4, … calls, until it has its samples or its time."""
     if options.samples:
-        samples, = options.samples
+        (samples,) = options.samples
         calls = max(CALLS if options.sampler == SAMPLERS[0] else 1, math.ceil(samples / film.renderer.largest))
         parts = itertools.repeat(math.ceil(samples / calls))
     else:

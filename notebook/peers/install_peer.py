@@ -15,7 +15,9 @@ def main():
     parser.add_argument("renderer", choices=list(PACKAGES))
     renderer = parser.parse_args().renderer
     if not shutil.which(PYTHON):
-        raise UserError(f"{PYTHON} is missing, for which these packages are made: install it, or `uv python install {PYTHON[6:]}`")
+        raise UserError(
+            f"{PYTHON} is missing, for which these packages are made: install it, or `uv python install {PYTHON[6:]}`"
+        )
     folder, packages = FOLDER / renderer, PACKAGES[renderer]
     run_to_end([PYTHON, "-m", "venv", "--clear", folder], f"a virtual environment in {folder}")
     print(f"installing {', '.join(packages)} into {folder}", flush=True)

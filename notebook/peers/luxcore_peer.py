@@ -36,23 +36,45 @@ def material_properties(name, material):
 def make_scene(scene, options):
     made, camera, aspect = pyluxcore.Scene(), scene.camera, options.width / options.height
     pixel = 2 / options.height  # LuxCore's pictures are a pixel too low
-    made.Parse(properties({
-        "scene.camera.type": "perspective", "scene.camera.fieldofview": float(camera["vertical_fov"]),
-        "scene.camera.screenwindow": [-aspect, aspect, -1 - pixel, 1 - pixel], "scene.camera.lookat.orig": floats(camera["position"]),
-        "scene.camera.lookat.target": floats(camera["target"]), "scene.camera.up": floats(camera["up"])}))
+    made.Parse(
+        properties(
+            {
+                "scene.camera.type": "perspective",
+                "scene.camera.fieldofview": float(camera["vertical_fov"]),
+                "scene.camera.screenwindow": [-aspect, aspect, -1 - pixel, 1 - pixel],
+                "scene.camera.lookat.orig": floats(camera["position"]),
+                "scene.camera.lookat.target": floats(camera["target"]),
+                "scene.camera.up": floats(camera["up"]),
+            }
+        )
+    )
     if scene.fog:
         albedo, extinction = np.broadcast_to(scene.fog["albedo"], 3), scene.fog["extinction"]
-        made.Parse(properties({
-            "scene.volumes.fog.type": "homogeneous", "scene.volumes.fog.scattering": floats(extinction * albedo),
-            "scene.volumes.fog.absorption": floats(extinction * (1 - albedo)),
-            "scene.volumes.fog.asymmetry": floats([scene.fog["anisotropy"]] * 3),
-            "scene.volumes.fog.multiscattering": True, "scene.world.volume.default": "fog"}))
+        made.Parse(
+            properties(
+                {
+                    "scene.volumes.fog.type": "homogeneous",
+                    "scene.volumes.fog.scattering": floats(extinction * albedo),
+                    "scene.volumes.fog.absorption": floats(extinction * (1 - albedo)),
+                    "scene.volumes.fog.asymmetry": floats([scene.fog["anisotropy"]] * 3),
+                    "scene.volumes.fog.multiscattering": True,
+                    "scene.world.volume.default": "fog",
+                }
+            )
+        )
     for number, surface in enumerate(scene.surfaces):
         name = f"surface_{number}"
         points, triangles, normals = (values and list(map(tuple, values)) for values in corners(surface))
         made.DefineMesh(name, points, triangles, normals, None, None, None)
-        made.Parse(properties({**material_properties(name, surface.material), f"scene.objects.{name}.shape": name,
-                               f"scene.objects.{name}.material": name}))
+        made.Parse(
+            properties(
+                {
+                    **material_properties(name, surface.material),
+                    f"scene.objects.{name}.shape": name,
+                    f"scene.objects.{name}.material": name,
+                }
+            )
+        )
     return made
 
 
@@ -67,13 +89,20 @@ class Renderer:
         self.scene, sampler = make_scene(scene, options), options.sampler.upper()
         depth = options.max_path_length + 1  # LuxCore counts segments
         self.settings = {
-            "renderengine.type": "PATHCPU", "sampler.type": sampler, f"sampler.{options.sampler}.adaptive.strength": 0.0,
-            "native.threads.count": len(os.sched_getaffinity(0)), "path.clamping.variance.maxvalue": 0.0,
+            "renderengine.type": "PATHCPU",
+            "sampler.type": sampler,
+            f"sampler.{options.sampler}.adaptive.strength": 0.0,
+            "native.threads.count": len(os.sched_getaffinity(0)),
+            "path.clamping.variance.maxvalue": 0.0,
             **{f"path.pathdepth.{kind}": depth for kind in ("total", "diffuse", "glossy", "specular")},
             # No roulette: its probabilities in LuxCore's two MIS weights differ, so that their sum is not 1.
             "path.russianroulette.depth": depth + 1,
-            "film.width": options.width, "film.height": options.height, "film.filter.type": "NONE",
-            "film.outputs.0.type": "RGB", "film.outputs.0.filename": "unused.exr"}
+            "film.width": options.width,
+            "film.height": options.height,
+            "film.filter.type": "NONE",
+            "film.outputs.0.type": "RGB",
+            "film.outputs.0.filename": "unused.exr",
+        }
 
     def render(self, samples, seed):
         settings = properties(self.settings | {"batch.haltspp": samples, "renderengine.seed": seed % (1 << 31) + 1})

@@ -11,7 +11,9 @@ def processor():
     """Model of this machine's CPU, and the number of cores that programs may use."""
     lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines() if Path("/proc/cpuinfo").exists() else []
     models = [line.partition(": ")[2] for line in lines if line.startswith("model name")]
-    return (models or [platform.machine()])[0], len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return (models or [platform.machine()])[0], len(os.sched_getaffinity(0)) if hasattr(
+        os, "sched_getaffinity"
+    ) else os.cpu_count()
 
 
 def find_device(program, settings):

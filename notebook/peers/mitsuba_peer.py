@@ -8,10 +8,13 @@ GPU_BATCH_PATHS = 1 << 26  # instead of MAX_BATCH_PATHS: they take about 4 GiB
 
 class Renderer:
     def __init__(self, scene, options):
-        self.scene, self.integrator = make_mitsuba_scene(scene, options.width, options.height, options.max_path_length,
-                                                         own_normals=True, sampler=options.sampler)
+        self.scene, self.integrator = make_mitsuba_scene(
+            scene, options.width, options.height, options.max_path_length, own_normals=True, sampler=options.sampler
+        )
         self.name, self.discarded_seconds, self.compiled = f"Mitsuba {mi.__version__}", 0.0, set()  # numbers of samples
-        self.largest = max(1, (GPU_BATCH_PATHS if mi.variant() == GPU_VARIANT else MAX_BATCH_PATHS) // (options.width * options.height))
+        self.largest = max(
+            1, (GPU_BATCH_PATHS if mi.variant() == GPU_VARIANT else MAX_BATCH_PATHS) // (options.width * options.height)
+        )
         glossy = any(surface.material.specular_albedo.any() for surface in scene.surfaces)
         self.note = "the Phong lobe is Python, which slows Mitsuba down" if glossy and mi.variant() == "scalar_rgb" else ""
 

@@ -23,14 +23,21 @@ def report(module, options):
     from references.exr import rgb_channels, write_exr
     from references.images import read_reference
     from references.scenes import read_scene
+
     scene = read_scene(options.scene)
     renderer = module.Renderer(scene, options)
     film = Film(renderer, read_reference(options.reference) if options.reference else None, options.seed)
     rows = list(separate_rows(film, options.samples)) if len(options.samples or []) > 1 else growing_rows(film, options)
     if options.output and film.total:
         write_exr(options.output, rgb_channels(film.total.image), {})
-    return {"scene_hash": scene.hash, "device": renderer.name, "backend": renderer.integrator, "rows": rows,
-            "discarded_seconds": renderer.discarded_seconds, "note": renderer.note}
+    return {
+        "scene_hash": scene.hash,
+        "device": renderer.name,
+        "backend": renderer.integrator,
+        "rows": rows,
+        "discarded_seconds": renderer.discarded_seconds,
+        "note": renderer.note,
+    }
 
 
 def main():
@@ -61,6 +68,7 @@ def main():
     module = load(renderer)
     if renderer == "mitsuba":
         from references.mitsuba_scene import run_mitsuba
+
         run_mitsuba(options.variant, run)
     else:
         run()

@@ -36,6 +36,7 @@ class Frame(NamedTuple):
 
 class Clock:
     """Seconds of a `with timed()`."""
+
     seconds = cpu_seconds = 0.0
 
 

@@ -21,10 +21,19 @@ GOES_ON = True
 def parse():
     parser = new_parser("./lab notebook report", __doc__)
     parser.add_argument("--peer", choices=["mitsuba"], help="render with Mitsuba 3 as well, where it is installed")
-    parser.add_argument("--peer-sampler", choices=SAMPLERS, action="append", default=[],
-                        help="of Mitsuba, besides independent; may be given several times")
-    parser.add_argument("--record", type=Path, metavar="FILE.json",
-                        help="write no page, but measure what docs/results.md shows; with --peer compare the backends of a CPU with Mitsuba's")
+    parser.add_argument(
+        "--peer-sampler",
+        choices=SAMPLERS,
+        action="append",
+        default=[],
+        help="of Mitsuba, besides independent; may be given several times",
+    )
+    parser.add_argument(
+        "--record",
+        type=Path,
+        metavar="FILE.json",
+        help="write no page, but measure what docs/results.md shows; with --peer compare the backends of a CPU with Mitsuba's",
+    )
     return parser.parse_args()
 
 
@@ -34,12 +43,20 @@ def chosen_cases(options):
     if not options.peer:
         return cases
     variants = working_variants()
-    cases = [case for pair in scenes for case in [*report_cases([pair], chapters), *peer_cases([pair], variants, options.peer_sampler)]]
+    cases = [
+        case for pair in scenes for case in [*report_cases([pair], chapters), *peer_cases([pair], variants, options.peer_sampler)]
+    ]
     if is_on_cpu(options, CHAPTERS[chapters[0]]):
         return cases
     on_gpu = [variant for variant in variants if variant == GPU_VARIANT]
-    return cases + [case for pair in scenes for case in [*report_cases([pair], chapters, is_large=True),
-                                                         *peer_cases([pair], on_gpu, options.peer_sampler if on_gpu else [], is_large=True)]]
+    return cases + [
+        case
+        for pair in scenes
+        for case in [
+            *report_cases([pair], chapters, is_large=True),
+            *peer_cases([pair], on_gpu, options.peer_sampler if on_gpu else [], is_large=True),
+        ]
+    ]
 
 
 def is_on_cpu(options, program):

@@ -28,5 +28,11 @@ def main():
         record = read_json(file)
         print(f"{file.relative_to(RECORDS).with_suffix('')!s:24} {when(record) or 'no date':42} {state(record)}")
     untold, trials = learn.unmeasured(learn.read_knowledge(course())), confusion.outdated()
-    print(f"{'knowledge of ./lab check':67} " + (f"older: {len(untold)} to be learnt, such as chapter {untold[0][0]}, {untold[0][1]}" if untold else "up to date"))
-    print(f"{'trials of ./lab check':67} " + (f"older: {len(trials)} to be tried again, such as {trials[0]}" if trials else "up to date"))
+    print(
+        f"{'knowledge of ./lab check':67} "
+        + (f"older: {len(untold)} to be learnt, such as chapter {untold[0][0]}, {untold[0][1]}" if untold else "up to date")
+    )
+    print(
+        f"{'trials of ./lab check':67} "
+        + (f"older: {len(trials)} to be tried again, such as {trials[0]}" if trials else "up to date")
+    )

@@ -43,9 +43,24 @@ def best_table():
     rows, before = [], None
     for key in sorted(chapters.keys() | peers.keys(), key=lambda key: (scenes.index(key[0]), *key[1:])):
         scene, width, height, device = key
-        rows.append([f"`{scene}`" if scene != before else "", f"{width} x {height}", device,
-                     *chapters.get(key, ["", ""]), *peers.get(key, ["", "", ""])])
+        rows.append(
+            [
+                f"`{scene}`" if scene != before else "",
+                f"{width} x {height}",
+                device,
+                *chapters.get(key, ["", ""]),
+                *peers.get(key, ["", "", ""]),
+            ]
+        )
         before = scene
-    head = ["scene", "pixels", "device", "best chapter", "times faster than the first", "best against Mitsuba",
-            "Mitsuba at its best", "times faster than that"]
+    head = [
+        "scene",
+        "pixels",
+        "device",
+        "best chapter",
+        "times faster than the first",
+        "best against Mitsuba",
+        "Mitsuba at its best",
+        "times faster than that",
+    ]
     return table(head, rows, left=4)

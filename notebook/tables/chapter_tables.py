@@ -23,14 +23,16 @@ def kind_tables(record):
         rows = tables.setdefault(key, [])
         options = f"--samples {case['samples']} {case['options']}".strip()
         cost = [errors(case, key) for key in ("rays", "device_seconds")]
-        rows.append([
-            case["case"],
-            f"`{options}`",
-            f"{per_sample(case, 'rays'):.3g}",
-            seconds_text(per_sample(case, "device_seconds")),
-            f"{case['samples'] * errors(case).mean:.3g}",
-            *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, bases.get(key, cost))),
-        ])
+        rows.append(
+            [
+                case["case"],
+                f"`{options}`",
+                f"{per_sample(case, 'rays'):.3g}",
+                seconds_text(per_sample(case, "device_seconds")),
+                f"{case['samples'] * errors(case).mean:.3g}",
+                *(with_interval(paired_ratio(*both)) if rows else "1" for both in zip(cost, bases.get(key, cost))),
+            ]
+        )
         if len(rows) == 1 or key[0] == "chapter":
             bases[key] = cost
     return tables
@@ -65,10 +67,12 @@ def page_table(name, record):
             if number:
                 # Only the very first case is shown without the row before it.
                 places = [i for i, row in enumerate(cases) if row[0] == name and (i > 0 or name == record["cases"][0]["case"])]
-                chosen = [row for i in places for row in cases[max(i - 1, 0):i + 1]]
+                chosen = [row for i in places for row in cases[max(i - 1, 0) : i + 1]]
             if number and chosen:  # the other is compared with the first row
                 chosen[0] = chosen[0][:-2] + ["1", "1"]
-            rows += [[f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2 if is_wide else -2:]] for i, row in enumerate(chosen)]
+            rows += [
+                [f"`{scene_of(scene)}`" if i == 0 else "", row[0], *row[2 if is_wide else -2 :]] for i, row in enumerate(chosen)
+            ]
     return table(["scene", "", *(COLUMNS if is_wide else COLUMNS[-2:])], rows, left=2)
 
 
@@ -80,15 +84,19 @@ def expected_table():
         cells = []
         for case in cases:
             error = case["samples"] * errors(case).mean
-            cells.append(f"{per_sample(case, 'device_seconds') * pixels * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %")
+            cells.append(
+                f"{per_sample(case, 'device_seconds') * pixels * samples:.2g} s, {100 * math.sqrt(error / samples):.2g} %"
+            )
         rows.append([record["environment"]["device"], *cells])
     text = table(["device", *(case["case"] for case in cases)], rows) + "\n"
     for record in load_records("backends"):
         rates = record["scenes"][0]["backends"]
         best = max(rates, key=lambda name: rates[name]["paths_per_second"])
         paths = rates[best]["paths_per_second"]
-        text += (f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths per second in a Cornell box by next event estimation with Russian roulette. "
-                 f"The picture above takes {1e3 * pixels * samples / paths:.2g} ms.\n\n")
+        text += (
+            f"{record['device']}, `{best}`: {paths / 1e6:.0f} million paths per second in a Cornell box by next event estimation with Russian roulette. "
+            f"The picture above takes {1e3 * pixels * samples / paths:.2g} ms.\n\n"
+        )
     return text
 
 
@@ -119,9 +127,30 @@ def over_bare(rates):
 
 def backend_table(record):
     """The Markdown table of one device."""
-    head = ["scene", "triangles", "backend", "million paths/s", "million rays/s", "bare million rays/s", "rays/s over bare", "structure"]
-    rows = [[scene["scene"], f"{scene['triangles']:,}", f"`{name}`", f"{rates['paths_per_second'] / 1e6:.4g}", f"{rates['rays_per_second'] / 1e6:.4g}",
-             f"{rates['bare_rays_per_second'] / 1e6:.4g}", over_bare(rates),
-             f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s"]
-            for scene in record["scenes"] for name, rates in scene["backends"].items()]
-    return f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x {record['size']} pixels.\n\n" + table(head, rows, left=3)
+    head = [
+        "scene",
+        "triangles",
+        "backend",
+        "million paths/s",
+        "million rays/s",
+        "bare million rays/s",
+        "rays/s over bare",
+        "structure",
+    ]
+    rows = [
+        [
+            scene["scene"],
+            f"{scene['triangles']:,}",
+            f"`{name}`",
+            f"{rates['paths_per_second'] / 1e6:.4g}",
+            f"{rates['rays_per_second'] / 1e6:.4g}",
+            f"{rates['bare_rays_per_second'] / 1e6:.4g}",
+            over_bare(rates),
+            f"{rates['structure_bytes'] / 2**20:.3g} MiB in {rates['structure_seconds']:.2g} s",
+        ]
+        for scene in record["scenes"]
+        for name, rates in scene["backends"].items()
+    ]
+    return f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['size']} x {record['size']} pixels.\n\n" + table(
+        head, rows, left=3
+    )

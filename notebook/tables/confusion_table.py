@@ -4,7 +4,11 @@ from project import CHAPTERS, name_of, read_json, table
 from scipy.stats import binomtest
 from tables.records import RECORDS
 
-CONDITIONS = {"new seeds": "chapters' own shaders, new seeds", "variants": "shaders written in another way", "correct": "correct shaders"}
+CONDITIONS = {
+    "new seeds": "chapters' own shaders, new seeds",
+    "variants": "shaders written in another way",
+    "correct": "correct shaders",
+}
 SUBMISSIONS = {"development": "for development", "held_out": "not looked at before"}
 LARGE_BIAS, LARGE_NOISE = 0.02, 1.5
 
@@ -48,8 +52,16 @@ def names(trial):
 
 
 def row(words, rate):
-    return [words, str(rate.tried), part(rate.found_of_large, rate.large), str(rate.found), part(rate.told, rate.found),
-            part(rate.fitting, rate.found), part(rate.among, rate.found), part(rate.right, rate.alone)]
+    return [
+        words,
+        str(rate.tried),
+        part(rate.found_of_large, rate.large),
+        str(rate.found),
+        part(rate.told, rate.found),
+        part(rate.fitting, rate.found),
+        part(rate.among, rate.found),
+        part(rate.right, rate.alone),
+    ]
 
 
 def submission_row(words, submissions):
@@ -57,10 +69,15 @@ def submission_row(words, submissions):
     wrong = [row for row in submissions if not row["is_right"]]
     found = [row for row in wrong if row["verdict"] != "correct"]
     alone = [row for row in found if len(row["named"]) == 1]
-    return [words, part(sum(row["verdict"] != "correct" for row in submissions if row["is_right"]), len(submissions) - len(wrong)),
-            part(len(found), len(wrong)), part(sum(bool(row["facts"] or row["named"]) for row in found), len(found)),
-            part(sum(not row["untrue"] for row in found), len(found)),
-            part(sum(bool(row["points"]) for row in found), len(found)), part(sum(bool(row["name_is_right"]) for row in alone), len(alone))]
+    return [
+        words,
+        part(sum(row["verdict"] != "correct" for row in submissions if row["is_right"]), len(submissions) - len(wrong)),
+        part(len(found), len(wrong)),
+        part(sum(bool(row["facts"] or row["named"]) for row in found), len(found)),
+        part(sum(not row["untrue"] for row in found), len(found)),
+        part(sum(bool(row["points"]) for row in found), len(found)),
+        part(sum(bool(row["name_is_right"]) for row in alone), len(alone)),
+    ]
 
 
 def submission_table():
@@ -71,16 +88,35 @@ def submission_table():
         if file.exists():
             submissions = read_json(file)["submissions"]
             rows.append(submission_row(SUBMISSIONS[key], submissions.values()))
-            told += [[f"{name}, {SUBMISSIONS[key]}", row["mistake"] or "none", row["verdict"], names(row)]
-                     for name, row in submissions.items() if not row["is_right"] or row["verdict"] != "correct"]
-    head = ["submissions", "right ones refused", "wrong ones found", "not silent", "all facts true", "pointing at the mistake", "a single name is right"]
+            told += [
+                [f"{name}, {SUBMISSIONS[key]}", row["mistake"] or "none", row["verdict"], names(row)]
+                for name, row in submissions.items()
+                if not row["is_right"] or row["verdict"] != "correct"
+            ]
+    head = [
+        "submissions",
+        "right ones refused",
+        "wrong ones found",
+        "not silent",
+        "all facts true",
+        "pointing at the mistake",
+        "a single name is right",
+    ]
     text = "\nShaders that others wrote, without a look at the catalogue:\n\n" + table(head, rows)
     return text + "\n" + table(["submission", "mistake", "verdict", "names that fit"], told, left=4)
 
 
 def confusion_table(record):
     """A table of rates by condition, one by chapter, and a list of missed or misnamed mistakes."""
-    head = ["tried", "large ones found", "found", "not silent", "the mistake is one of the names that fit", "or of those that may fit", "a single name is right"]
+    head = [
+        "tried",
+        "large ones found",
+        "found",
+        "not silent",
+        "the mistake is one of the names that fit",
+        "or of those that may fit",
+        "a single name is right",
+    ]
     conditions = rates(record)
     correct = conditions.pop("correct", Rate([]))
     text = f"\nThe check refused correct shaders {part(correct.found, correct.tried)} times.\n\n"
@@ -88,7 +124,8 @@ def confusion_table(record):
     numbers = {name_of(number): number for number in CHAPTERS}
     chapters = rates(record, lambda key: numbers[key.split("/")[1]] if key.startswith("new seeds") else None)
     text += "\nThe first row for each chapter:\n\n" + table(
-        ["chapter", *head], [row(str(chapter), rate) for chapter, rate in sorted(chapters.items())])
+        ["chapter", *head], [row(str(chapter), rate) for chapter, rate in sorted(chapters.items())]
+    )
     missed = []
     for key, trial in record["trials"].items():
         if trial["mistake"] and trial["named"] != [trial["mistake"]]:

@@ -28,8 +28,10 @@ def time_text(row, base):
 
 
 def device_line(record):
-    return (f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['cpu_threads']} "
-            f"threads of the CPU, {record['size']} x {record['size']} pixels.\n")
+    return (
+        f"Driver {record['driver']}, Vulkan {record['api_version']}, {record['cpu_threads']} "
+        f"threads of the CPU, {record['size']} x {record['size']} pixels.\n"
+    )
 
 
 def feature_table(record):
@@ -54,8 +56,10 @@ def buffers_text(sizes):
 
 def scene_table(record):
     """The memory that the shipped scenes take."""
-    rows = [[f"`{scene['scene']}`", buffers_text(scene["bytes"]), f"{scene['triangles']:,}", f"{scene['instances']:,}"]
-            for scene in record["scenes"]]
+    rows = [
+        [f"`{scene['scene']}`", buffers_text(scene["bytes"]), f"{scene['triangles']:,}", f"{scene['instances']:,}"]
+        for scene in record["scenes"]
+    ]
     return "The shipped scenes:\n\n" + table(["scene", "buffers", "triangles", "instances"], rows, left=2)
 
 
@@ -86,8 +90,9 @@ def growth_table(measured):
         if grows:
             columns.append(("memory", memory_of, lambda row: bytes_text(memory_of(row))))
         if builds:
-            columns.append(("structure built in", lambda row: row["structure_seconds"],
-                            lambda row: seconds_text(row["structure_seconds"])))
+            columns.append(
+                ("structure built in", lambda row: row["structure_seconds"], lambda row: seconds_text(row["structure_seconds"]))
+            )
         for number, (name, quantity, text) in enumerate(columns):
             head.append(name if number else f"`{backend['backend']}`: {name}")
             slopes.append(exponent(backend["rows"], quantity))
@@ -111,6 +116,8 @@ def build_rate(record):
     for growth in record["growth"]:
         if growth["quantity"] == "triangles" and growth["backend"] == "compute":
             row = growth["rows"][-1]
-            return (f"\n`compute` builds its tree on the CPU: {row['count'] / row['structure_seconds'] / 1e6:.3g} million triangles "
-                    f"per second with {record['cpu_threads']} threads.\n")
+            return (
+                f"\n`compute` builds its tree on the CPU: {row['count'] / row['structure_seconds'] / 1e6:.3g} million triangles "
+                f"per second with {record['cpu_threads']} threads.\n"
+            )
     return ""

@@ -25,8 +25,15 @@ from tables.result_plots import PLOTS, is_fresh, short_device, write_plot
 RESULTS = NOTEBOOK / "results"
 COMMAND = "./lab notebook export"
 # Tables of results/DEVICE.md: from records/FOLDER/DEVICE.json.
-DEVICE_TABLES = {"chapters": ("chapters", chapter_tables), "backends": ("backends", backend_table), "peers": ("peers", peer_table),
-                 "cpu": ("cpu", cpu_table), "renderers": ("renderers", renderer_table), "features": ("cost", feature_table), "growth": ("cost", growth_tables)}
+DEVICE_TABLES = {
+    "chapters": ("chapters", chapter_tables),
+    "backends": ("backends", backend_table),
+    "peers": ("peers", peer_table),
+    "cpu": ("cpu", cpu_table),
+    "renderers": ("renderers", renderer_table),
+    "features": ("cost", feature_table),
+    "growth": ("cost", growth_tables),
+}
 # Shown wherever times on such a device are compared.
 NO_RAY_TRACING_CORES = """
 > **An NVIDIA H200 has no ray tracing cores.** There the driver, our tree and Mitsuba's OptiX all trace rays in software. GPUs with such
@@ -34,10 +41,19 @@ NO_RAY_TRACING_CORES = """
 
 """
 OWN_TABLES = {
-    "expected": expected_table, "headline": headline_table, "hard cases": case_table, "device arithmetic": device_tables,
-    "best chapters": best_table, "submissions": submission_table, "facet sampling": sampling_table, "furnace": furnace_table,
-    "lens points": lens_table, "light choices": light_table, "media strategies": media_table,
-    "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")), "no ray tracing cores": lambda: NO_RAY_TRACING_CORES,
+    "expected": expected_table,
+    "headline": headline_table,
+    "hard cases": case_table,
+    "device arithmetic": device_tables,
+    "best chapters": best_table,
+    "submissions": submission_table,
+    "facet sampling": sampling_table,
+    "furnace": furnace_table,
+    "lens points": lens_table,
+    "light choices": light_table,
+    "media strategies": media_table,
+    "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")),
+    "no ray tracing cores": lambda: NO_RAY_TRACING_CORES,
 }
 
 
@@ -58,8 +74,10 @@ def measured_table(name, page):
         return device_table(name, page.stem)
     results = os.path.relpath(DOCS / "results.md", page.parent)
     first = load_records("chapters")[0]
-    return (f"Measured on {short_device(first['environment']['device'])}, {when(first)}; [what the columns mean]({results}#what-the-numbers-mean), "
-            f"[other devices]({results}#all-numbers).\n\n{page_table(name, first)}\n")
+    return (
+        f"Measured on {short_device(first['environment']['device'])}, {when(first)}; [what the columns mean]({results}#what-the-numbers-mean), "
+        f"[other devices]({results}#all-numbers).\n\n{page_table(name, first)}\n"
+    )
 
 
 def write_plots(is_check):
@@ -75,6 +93,10 @@ def main():
     parser = Parser(COMMAND, __doc__)
     parser.add_argument("--check", action="store_true", help="write nothing; say which page is not up to date")
     is_check = parser.parse_args().check
-    write_pages([*PAGES, *sorted(RESULTS.glob("*.md"))],
-                lambda page, text: filled(text, "measured", lambda name: measured_table(name, page)), is_check, COMMAND)
+    write_pages(
+        [*PAGES, *sorted(RESULTS.glob("*.md"))],
+        lambda page, text: filled(text, "measured", lambda name: measured_table(name, page)),
+        is_check,
+        COMMAND,
+    )
     write_plots(is_check)

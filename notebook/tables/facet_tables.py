@@ -23,8 +23,10 @@ def sampling_table():
     """Error × time of the other ways relative to visible normals, by roughness and device."""
     records = load_records("facets")
     columns = [(record, way) for record in records for way in WAYS[1:]]
-    rows = [[f"{roughness:g}", *(with_interval(sampling_cost(record["sampling"][i], way)) for record, way in columns)]
-            for i, roughness in enumerate(row["roughness"] for row in records[0]["sampling"])]
+    rows = [
+        [f"{roughness:g}", *(with_interval(sampling_cost(record["sampling"][i], way)) for record, way in columns)]
+        for i, roughness in enumerate(row["roughness"] for row in records[0]["sampling"])
+    ]
     return table(["$P_r$", *(f"{WAYS_IN_WORDS[way]}, {record['device'].split(' (')[0]}" for record, way in columns)], rows)
 
 
@@ -38,13 +40,20 @@ def lost_by_degrees(record):
     found = {}
     for row in record["furnace"]:
         found.setdefault(f"{row['degrees']:g}", []).append(
-            {"roughness": row["roughness"], "single": percent_lost(row["single"]), "corrected": percent_lost(row["corrected"])})
+            {"roughness": row["roughness"], "single": percent_lost(row["single"]), "corrected": percent_lost(row["corrected"])}
+        )
     return found
 
 
 def furnace_table():
     """A column for each angle, and one for the largest loss or gain that the correction leaves."""
     lost = lost_by_degrees(load_records("facets")[0])
-    rows = [[f"{cells[0]['roughness']:g}", *(f"{round(cell['single'][0], 1) + 0.0:.1f} %" for cell in cells),
-             f"{max(abs(cell['corrected'][0]) for cell in cells):.2f} %"] for cells in zip(*lost.values())]
+    rows = [
+        [
+            f"{cells[0]['roughness']:g}",
+            *(f"{round(cell['single'][0], 1) + 0.0:.1f} %" for cell in cells),
+            f"{max(abs(cell['corrected'][0]) for cell in cells):.2f} %",
+        ]
+        for cells in zip(*lost.values())
+    ]
     return table(["$P_r$", *(f"lost, seen from {degrees}°" for degrees in lost), "left by the correction"], rows)

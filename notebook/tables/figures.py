@@ -24,9 +24,23 @@ def renders_at_equal_time(scenes=("cornell_box", "heart_light"), size=160):
     for case in load_records("chapters")[0]["cases"]:
         if kind_of(case) == "chapter" and case["scene"].startswith(scenes):
             scene = Path(case["scene_file"]).stem
-            options = ("--samples", round(SECONDS / (per_sample(case, "device_seconds") * size**2)), "--max-path-length", case["max_path_length"])
-            renders.append(figures.Render(f"{scene}_{int(case['program'][:2])}", case["program"], scene, size, options, row=scenes.index(scene),
-                                  label="chapter {number}: {samples:,} samples"))
+            options = (
+                "--samples",
+                round(SECONDS / (per_sample(case, "device_seconds") * size**2)),
+                "--max-path-length",
+                case["max_path_length"],
+            )
+            renders.append(
+                figures.Render(
+                    f"{scene}_{int(case['program'][:2])}",
+                    case["program"],
+                    scene,
+                    size,
+                    options,
+                    row=scenes.index(scene),
+                    label="chapter {number}: {samples:,} samples",
+                )
+            )
     return renders
 
 
@@ -44,7 +58,10 @@ def noise(folder, renders):
     frames[0].save(folder / "noise.webp", save_all=True, append_images=frames[1:], duration=1500, loop=0, quality=80)
 
 
-FIGURES = {"noise": (lambda: renders_at_equal_time(("cornell_box",), 256), noise), "equal_time": (renders_at_equal_time, sheet_of("equal_time"))}
+FIGURES = {
+    "noise": (lambda: renders_at_equal_time(("cornell_box",), 256), noise),
+    "equal_time": (renders_at_equal_time, sheet_of("equal_time")),
+}
 
 
 def main():

@@ -13,7 +13,15 @@ def lens_table():
     def errors(row, way, samples):
         return Series({run: found[samples] for run, found in enumerate(row[way])})
 
-    return table(["instead", "aperture diameter", *(f"{samples} samples" for samples in counts)],
-                 [[title, f"{row['aperture_diameter']:g}", *(with_interval(paired_ratio(errors(row, way, samples), errors(row, "joint", samples)))
-                                                             for samples in counts)]
-                  for way, title in (("padded", "two points"), ("polar", "polar map")) for row in rows])
+    return table(
+        ["instead", "aperture diameter", *(f"{samples} samples" for samples in counts)],
+        [
+            [
+                title,
+                f"{row['aperture_diameter']:g}",
+                *(with_interval(paired_ratio(errors(row, way, samples), errors(row, "joint", samples))) for samples in counts),
+            ]
+            for way, title in (("padded", "two points"), ("polar", "polar map"))
+            for row in rows
+        ],
+    )

@@ -9,6 +9,7 @@ from tables.records import load_records
 
 def light_table():
     """What each device says of other ways to choose a lamp, relative to the tree: their error, time and the product of both."""
+
     def series(row, choice, *keys):
         return Series(dict(enumerate(map(math.prod, zip(*(row[choice][key] for key in keys))))))
 
@@ -16,6 +17,12 @@ def light_table():
         for keys in (["rel_mse"], ["seconds"], ["rel_mse", "seconds"]):
             yield with_interval(paired_ratio(series(row, choice, *keys), series(row, "tree", *keys)))
 
-    return table(["device", "scene", "instead of the tree", "error", "time", "error × time"],
-                 [["CPU" if record["backend"] == "native" else record["device"], f"`{row['scene']}`", title, *cells(row, choice)]
-                  for record in load_records("lights") for row in record["rows"] for choice, title in (("power", "by power"), ("uniform", "all alike"))])
+    return table(
+        ["device", "scene", "instead of the tree", "error", "time", "error × time"],
+        [
+            ["CPU" if record["backend"] == "native" else record["device"], f"`{row['scene']}`", title, *cells(row, choice)]
+            for record in load_records("lights")
+            for row in record["rows"]
+            for choice, title in (("power", "by power"), ("uniform", "all alike"))
+        ],
+    )

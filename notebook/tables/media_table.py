@@ -7,9 +7,20 @@ from tables.records import load_records
 
 def media_table():
     """Error times time of each strategy relative to both together."""
+
     def products(row, strategy):
         return Series(dict(enumerate(row["mse_times_cpu_seconds"][strategy])))
 
-    return table(["light in `fog`", "light samples alone", "bounces alone", "equiangular samples"],
-                 [[row["light"], *(with_interval(paired_ratio(products(row, strategy), products(row, "both"))) for strategy in ("light", "bounces", "equiangular"))]
-                  for row in load_records("media")[0]["rows"]])
+    return table(
+        ["light in `fog`", "light samples alone", "bounces alone", "equiangular samples"],
+        [
+            [
+                row["light"],
+                *(
+                    with_interval(paired_ratio(products(row, strategy), products(row, "both")))
+                    for strategy in ("light", "bounces", "equiangular")
+                ),
+            ]
+            for row in load_records("media")[0]["rows"]
+        ],
+    )

@@ -38,17 +38,31 @@ def size_table(scenes):
     found = samplers(scenes)
     best = max(found, key=found.get, default=None)
     peers = [case for case in dict.fromkeys(cases) if case not in found or case == best]
-    head = ["scene", "", "million samples/s", "million paths/s", "error of one sample",
-            *(f"times faster than {peer}" for peer in peers), f"seconds to {100 * TARGET_ERROR:.0f} % error", "of which start-up"]
+    head = [
+        "scene",
+        "",
+        "million samples/s",
+        "million paths/s",
+        "error of one sample",
+        *(f"times faster than {peer}" for peer in peers),
+        f"seconds to {100 * TARGET_ERROR:.0f} % error",
+        "of which start-up",
+    ]
     rows = []
     for scene in scenes:
         gains = gains_of(scene)
         for number, case in enumerate(scene["cases"]):
-            rows.append([f"`{scene_of(scene['scene'])}`" if number == 0 else "", case["case"],
-                         *(short(case[f"{what}_per_second"] / 1e6) for what in ("samples", "paths")),
-                         short(case["error_of_one_sample"], 2),
-                         *(with_interval(gains[case["case"], peer]) if (case["case"], peer) in gains else "" for peer in peers),
-                         with_interval(case["seconds_to_target"]), with_interval(case["start_up_seconds"])])
+            rows.append(
+                [
+                    f"`{scene_of(scene['scene'])}`" if number == 0 else "",
+                    case["case"],
+                    *(short(case[f"{what}_per_second"] / 1e6) for what in ("samples", "paths")),
+                    short(case["error_of_one_sample"], 2),
+                    *(with_interval(gains[case["case"], peer]) if (case["case"], peer) in gains else "" for peer in peers),
+                    with_interval(case["seconds_to_target"]),
+                    with_interval(case["start_up_seconds"]),
+                ]
+            )
     size = f"{scenes[0]['width']} x {scenes[0]['height']}"
     return f"\n{size} pixels:\n{sampler_text(scenes)}\n" + table(head, rows, left=2)
 
@@ -60,5 +74,6 @@ def peer_table(report):
         if scene["gains"]:
             sizes.setdefault((scene["width"], scene["height"]), []).append(scene)
     environment, first = report["environment"], next(iter(sizes.values()))[0]["cases"][0]
-    return (f"{environment['device']}, `{first['backend']}`, and {environment['peer']}.\n"
-            + "".join(map(size_table, sizes.values())))
+    return f"{environment['device']}, `{first['backend']}`, and {environment['peer']}.\n" + "".join(
+        map(size_table, sizes.values())
+    )

@@ -22,5 +22,14 @@ def when(record):
 def record_table(page):
     """The records that a page of results shows, and when they were measured: those of its device if there are any, or else all."""
     files = sorted(RECORDS.glob(f"*/{page.stem}.json")) or sorted(RECORDS.glob("*/*.json"))
-    return table(["record", "measured"], [
-        [f"[{file.relative_to(RECORDS).with_suffix('')}]({os.path.relpath(file, page.parent)})", when(read_json(file)) or "no date"] for file in files], left=2)
+    return table(
+        ["record", "measured"],
+        [
+            [
+                f"[{file.relative_to(RECORDS).with_suffix('')}]({os.path.relpath(file, page.parent)})",
+                when(read_json(file)) or "no date",
+            ]
+            for file in files
+        ],
+        left=2,
+    )

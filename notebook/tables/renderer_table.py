@@ -13,15 +13,20 @@ def by_scene(record):
     for case in record["cases"]:
         if case["runs"]:
             scenes.setdefault(scene_of(case["scene"]), []).append(case)
-    return {scene: (next(case for case in cases if not case["is_peer"]), [case for case in cases if case["is_peer"]])
-            for scene, cases in scenes.items()}
+    return {
+        scene: (next(case for case in cases if not case["is_peer"]), [case for case in cases if case["is_peer"]])
+        for scene, cases in scenes.items()
+    }
 
 
 def renderer_gains(record, clock):
     """{scene: {renderer: {samples: times that our chapter is faster to the same error, with its interval}}}."""
+
     def gains(peer, ours):
-        counts = COUNTS[:len(ours["runs"][0]["rows"])]
-        return {samples: paired_ratio(errors(peer, clock, index), errors(ours, clock, index)) for index, samples in enumerate(counts)}
+        counts = COUNTS[: len(ours["runs"][0]["rows"])]
+        return {
+            samples: paired_ratio(errors(peer, clock, index), errors(ours, clock, index)) for index, samples in enumerate(counts)
+        }
 
     return {scene: {peer["case"]: gains(peer, ours) for peer in peers} for scene, (ours, peers) in by_scene(record).items()}
 
@@ -44,7 +49,9 @@ def per_sample(case, index):
 def gain_texts(gains, case, is_ours):
     """A cell for each number of samples; those that a scene lacks are empty."""
     counts = next(iter(gains.values()))
-    return ["" if samples not in counts else "1" if is_ours else with_interval(gains[case["case"]][samples]) for samples in COUNTS]
+    return [
+        "" if samples not in counts else "1" if is_ours else with_interval(gains[case["case"]][samples]) for samples in COUNTS
+    ]
 
 
 def left_out(record):
@@ -61,14 +68,23 @@ def renderer_table(record):
     text = f"{environment['processor']}, {environment['cores']} cores, and {names}.\n"
 
     def rows(cells):
-        return [[f"`{scene}`" if case is ours else "", case["case"], *cells(scene, case, case is ours)]
-                for scene, (ours, peers) in scenes.items() for case in (ours, *peers)]
+        return [
+            [f"`{scene}`" if case is ours else "", case["case"], *cells(scene, case, case is ours)]
+            for scene, (ours, peers) in scenes.items()
+            for case in (ours, *peers)
+        ]
 
     def numbers(_, case, is_ours):
         return [*per_sample(case, COUNTS.index(64)), per_sample(case, COUNTS.index(256))[0], difference(case, comparisons)]
 
-    head = ["scene", "", "error of one sample at 64", "CPU seconds per million samples", "error of one sample at 256",
-            "mean minus the reference's"]
+    head = [
+        "scene",
+        "",
+        "error of one sample at 64",
+        "CPU seconds per million samples",
+        "error of one sample at 256",
+        "mean minus the reference's",
+    ]
     text += "\n" + table(head, rows(numbers), left=2)
     for clock, key in CLOCKS.items():
         gains = renderer_gains(record, key)

@@ -86,7 +86,13 @@ def panels(shown, row_height, columns, label, slow=None):
         axis.xaxis.set_major_formatter(plain)
         legend_above(axis, columns, title)
     if slow:
-        largest = max(high or value for rows in shown.values() for ratios in rows.values() for name, (value, _, high) in ratios.items() if name != slow)
+        largest = max(
+            high or value
+            for rows in shown.values()
+            for ratios in rows.values()
+            for name, (value, _, high) in ratios.items()
+            if name != slow
+        )
         for axis in axes[:, 0]:
             cut_off(axis, high=2 * largest)
     axes[-1, 0].set_xlabel(label)
@@ -107,7 +113,9 @@ def ideas():
                 name, base = before[scene]
                 values[f"{case['case'].removeprefix('chapter ')} over {name}", f"{scene}"] = paired_ratio(cost, base)
             before[scene] = case["case"].removeprefix("chapter "), cost
-    steps = sorted({step for values in shown.values() for step, _ in values}, key=lambda step: [int(n) for n in step.split(" over ")])
+    steps = sorted(
+        {step for values in shown.values() for step, _ in values}, key=lambda step: [int(n) for n in step.split(" over ")]
+    )
     rows = []
     for step in steps:
         scenes = dict.fromkeys(row for values in shown.values() for row in values if row[0] == step)
@@ -117,8 +125,14 @@ def ideas():
     for step in steps:
         inside = [-place for place, row in enumerate(rows) if row and row[0] == step]
         now, before = map(int, step.split(" over "))
-        axis.text(1.02, (inside[0] + inside[-1]) / 2, f"{with_name(now)}\nover {with_name(before)}", transform=axis.get_yaxis_transform(),
-                  va="center", fontsize=FONT - 1)
+        axis.text(
+            1.02,
+            (inside[0] + inside[-1]) / 2,
+            f"{with_name(now)}\nover {with_name(before)}",
+            transform=axis.get_yaxis_transform(),
+            va="center",
+            fontsize=FONT - 1,
+        )
     axis.axvline(1, color=GREY, linewidth=1.5)
     finish_axis(axis, xscale="log", xlabel="error × time, relative to the chapter before (left of 1: it pays)")
     axis.xaxis.set_major_formatter(plain)
@@ -129,15 +143,21 @@ def ideas():
 
 def backends_of(grown):
     """Rays per second of a backend by triangles: {count: [million, low, high]}."""
-    return {row["count"]: Series({i: row["rays_per_path"] * rate / 1e6 for i, rate in enumerate(row["paths_per_second"])}).interval()
-            for row in grown["rows"]}
+    return {
+        row["count"]: Series({i: row["rays_per_path"] * rate / 1e6 for i, rate in enumerate(row["paths_per_second"])}).interval()
+        for row in grown["rows"]
+    }
 
 
 def backends():
     """Which backend is the fastest, by the number of triangles?"""
     found = devices("cost")
-    shown = {short_device(device): {grown["backend"]: backends_of(grown) for grown in record["growth"] if grown["quantity"] == "triangles"}
-             for device, record in found.items()}
+    shown = {
+        short_device(device): {
+            grown["backend"]: backends_of(grown) for grown in record["growth"] if grown["quantity"] == "triangles"
+        }
+        for device, record in found.items()
+    }
     figure, axes = new_figure(300, columns=len(shown), squeeze=False)
     order = ["compute", "pipeline", "query", "native"]
     for axis, (device, by_name) in zip(axes[0], shown.items()):
@@ -160,16 +180,21 @@ def mitsuba():
     shown = {}
     for device, record in devices("peers").items():
         if any(scene["gains"] for scene in record["scenes"]):
-            shown[short_device(device)] = {f"{scene_of(scene['scene'])}, {scene['width']} × {scene['height']}": gains
-                                           for scene, best, gains in best_and_peers(record)}
+            shown[short_device(device)] = {
+                f"{scene_of(scene['scene'])}, {scene['width']} × {scene['height']}": gains
+                for scene, best, gains in best_and_peers(record)
+            }
     figure, _ = panels(shown, 44, 2, "times faster than Mitsuba to the same error (right of 1: the chapter is)", "Mitsuba scalar")
     return figure, shown
 
 
 def cpu_backends():
     """How many times faster than Mitsuba LLVM is each backend of a CPU, and each of Mitsuba's variants?"""
-    shown = {f"{record['environment']['processor']}, {record['environment']['cores']} cores, {clock}": cpu_gains(record, key)
-             for record in load_records("cpu") for clock, key in (("wall time", "seconds"), ("CPU time", "cpu_seconds"))}
+    shown = {
+        f"{record['environment']['processor']}, {record['environment']['cores']} cores, {clock}": cpu_gains(record, key)
+        for record in load_records("cpu")
+        for clock, key in (("wall time", "seconds"), ("CPU time", "cpu_seconds"))
+    }
     figure, axes = panels(shown, 60, 3, "times faster than Mitsuba LLVM to the same error (right of 1: it is faster)")
     for axis in axes:
         axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
@@ -179,9 +204,11 @@ def cpu_backends():
 
 def renderers():
     """How many times faster than other renderers is our best chapter, by scene and number of samples, in CPU time?"""
-    record, = load_records("renderers")
-    shown = {scene: {peer: {f"{samples} samples": ratio for samples, ratio in ratios.items()} for peer, ratios in peers.items()}
-             for scene, peers in renderer_gains(record, "cpu_seconds").items()}
+    (record,) = load_records("renderers")
+    shown = {
+        scene: {peer: {f"{samples} samples": ratio for samples, ratio in ratios.items()} for peer, ratios in peers.items()}
+        for scene, peers in renderer_gains(record, "cpu_seconds").items()
+    }
     figure, axes = panels(shown, 44, 4, "times that our chapter is faster to the same error, in CPU time (right of 1: it is)")
     for axis in axes:
         axis.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
@@ -198,7 +225,8 @@ def features():
             rows = [row["feature"] for row in backend["rows"][1:]]
             shown[f"{backend['backend']}, {short_device(device).split(' (')[0]}"] = {
                 row["feature"]: Series({i: a / b for i, (a, b) in enumerate(zip(base, row["paths_per_second"]))}).interval()
-                for row in backend["rows"][1:]}
+                for row in backend["rows"][1:]
+            }
     figure, axis = new_figure(36 * len(rows) + 110)
     forest(axis, rows, shown)
     axis.axvline(1, color=GREY, linewidth=1.5)
@@ -211,8 +239,12 @@ def check():
     """How often does ./lab check find a mistake, and name it?"""
     conditions = rates(read_json(RECORDS / "check/confusion.json"))
     rows = [words for key, words in CONDITIONS.items() if key in conditions]
-    measures = {"large mistakes found": lambda rate: (rate.found_of_large, rate.large), "not silent": lambda rate: (rate.told, rate.found),
-                "a single name is right": lambda rate: (rate.right, rate.alone), "refused though correct": lambda rate: (0, 0)}
+    measures = {
+        "large mistakes found": lambda rate: (rate.found_of_large, rate.large),
+        "not silent": lambda rate: (rate.told, rate.found),
+        "a single name is right": lambda rate: (rate.right, rate.alone),
+        "refused though correct": lambda rate: (0, 0),
+    }
     shown = {label: {} for label in measures}
     for key, words in CONDITIONS.items():
         rate = conditions.get(key)
@@ -236,7 +268,8 @@ def facets():
     for device, record in found.items():
         for way in WAYS[1:]:
             shown[f"{WAYS_IN_WORDS[way]}, {short_device(device).split(' (')[0]}"] = [
-                [row["roughness"], sampling_cost(row, way)] for row in record["sampling"]]
+                [row["roughness"], sampling_cost(row, way)] for row in record["sampling"]
+            ]
     lost = lost_by_degrees(next(iter(found.values())))
     figure, axes = new_figure(300, columns=2)
     for index, (label, rows) in enumerate(shown.items()):
@@ -245,24 +278,38 @@ def facets():
     finish_axis(axes[0], yscale="log", xlabel="roughness Pr" + note_on_cores(found), ylabel="error × time, visible normals are 1")
     axes[0].yaxis.set_major_formatter(plain)
     for index, (degrees, rows) in enumerate(lost.items()):
-        axes[1].plot([row["roughness"] for row in rows], [row["single"][0] for row in rows], color=COLOURS[index], label=f"seen from {degrees}°")
+        axes[1].plot(
+            [row["roughness"] for row in rows],
+            [row["single"][0] for row in rows],
+            color=COLOURS[index],
+            label=f"seen from {degrees}°",
+        )
     for index, rows in enumerate(lost.values()):  # they lie on one another
-        axes[1].plot([row["roughness"] for row in rows], [row["corrected"][0] for row in rows], "--", color=COLOURS[len(lost)],
-                     label=None if index else "corrected")
+        axes[1].plot(
+            [row["roughness"] for row in rows],
+            [row["corrected"][0] for row in rows],
+            "--",
+            color=COLOURS[len(lost)],
+            label=None if index else "corrected",
+        )
     finish_axis(axes[1], xlabel="roughness Pr", ylabel="% of the light lost")
     legend_above(axes[0], 2)
     axes[1].legend()
     return figure, {"sampling": shown, "lost": lost}
 
 
-PLOTS = {f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, cpu_backends, renderers, features, check, facets)}
+PLOTS = {
+    f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, cpu_backends, renderers, features, check, facets)
+}
 
 
 # ---------------------------------------------------------------------------------------------- files
 def digest(numbers):
     """Digest of a plot's numbers, to six digits: other versions of SciPy round the last ones differently."""
     text = json.dumps(numbers, default=str)
-    return hashlib.sha256(re.sub(r"-?\d+\.\d+(?:e-?\d+)?", lambda match: f"{float(match[0]):.6g}", text).encode()).hexdigest()[:16]
+    return hashlib.sha256(re.sub(r"-?\d+\.\d+(?:e-?\d+)?", lambda match: f"{float(match[0]):.6g}", text).encode()).hexdigest()[
+        :16
+    ]
 
 
 def write_plot(file, name):

@@ -40,7 +40,9 @@ def lines_of(commit):
     for name in names:
         part = next((part for part, pattern in PARTS.items() if re.match(pattern, name)), None)
         if part and not NO_TEXT.search(name):
-            content = git("show", f"{commit}:{name}") if commit else (ROOT / name).read_bytes() if (ROOT / name).is_file() else b""
+            content = (
+                git("show", f"{commit}:{name}") if commit else (ROOT / name).read_bytes() if (ROOT / name).is_file() else b""
+            )
             counts[part] += content.count(b"\n")
     return counts
 

@@ -21,7 +21,8 @@ def measured(text):
     parts = {"renderer": RENDERER} | ({"native": NATIVE} if "native" in text else {})
     named = {folder[3:]: number for number, folder in CHAPTERS.items() if re.search(rf"(?<![a-z]){folder[3:]}(?![a-z])", text)}
     return {part: digest(files_of(folders)) for part, folders in parts.items()} | {
-        name: digest(shaders_of(number), rendered_description(CHAPTERS[number])) for name, number in named.items()}
+        name: digest(shaders_of(number), rendered_description(CHAPTERS[number])) for name, number in named.items()
+    }
 
 
 def stamped(record):

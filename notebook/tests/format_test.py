@@ -21,4 +21,7 @@ class FormatTest(unittest.TestCase):
     def test_records_have_a_row_a_line(self):
         for file in RECORDS.glob("*/*.json"):
             with self.subTest(record=file.relative_to(RECORDS)):
-                self.assertTrue(file.read_text(encoding="utf-8") == json_rows(read_json(file)) + "\n", "./lab notebook ages --stamp FILE lays it out")
+                self.assertTrue(
+                    file.read_text(encoding="utf-8") == json_rows(read_json(file)) + "\n",
+                    "./lab notebook ages --stamp FILE lays it out",
+                )

@@ -26,8 +26,10 @@ class KnowledgeTest(unittest.TestCase):
         expected = {chapter: {} for chapter in KNOWN}  # others are not measured yet
         for bug in (bug for bug in catalogue() if bug.chapter in KNOWN):
             expected[bug.chapter][bug.mistake["name"]] = {key: bug.mistake[key] for key in ("hint", "slide")}
-        known = {chapter: {name: {key: entry[key] for key in ("hint", "slide")} for name, entry in entries.items()}
-                 for chapter, entries in KNOWN.items()}
+        known = {
+            chapter: {name: {key: entry[key] for key in ("hint", "slide")} for name, entry in entries.items()}
+            for chapter, entries in KNOWN.items()
+        }
         self.assertEqual(known, expected, "./lab notebook learn")
         for chapter, entries in known.items():
             self.assertGreaterEqual(len(entries), LEAST, f"chapter {chapter}")
@@ -67,7 +69,9 @@ class LearningTest(unittest.TestCase):
         self.assertNotIn("mean", planned["experiments"]["angle"])
         for name, known in KNOWLEDGE_OF[1]["mistakes"].items():
             self.assertEqual(planned["mistakes"][name]["unseen"], ["angle"])
-            self.assertEqual(planned["mistakes"][name]["shows"], {key: text for key, text in known["shows"].items() if key != "angle"})
+            self.assertEqual(
+                planned["mistakes"][name]["shows"], {key: text for key, text in known["shows"].items() if key != "angle"}
+            )
 
 
 class ConfusionTest(unittest.TestCase):

@@ -29,8 +29,11 @@ class MutationsTest(unittest.TestCase):
             self.assertLessEqual(set(unchanged.get(name_of(chapter), {})), set(changed), f"chapter {chapter}: stale")
 
     def test_it_grades_as_a_student_is_graded_without_the_cpp_compiler(self):
-        with (mock.patch.dict(os.environ), mock.patch.object(sys, "argv", ["mutations", "--list", "--chapters", "12"]),
-              mock.patch("builtins.print")):
+        with (
+            mock.patch.dict(os.environ),
+            mock.patch.object(sys, "argv", ["mutations", "--list", "--chapters", "12"]),
+            mock.patch("builtins.print"),
+        ):
             os.environ.pop("LAB_WITHOUT_NATIVE", None)
             mutations.main()
             self.assertEqual(os.environ.get("LAB_WITHOUT_NATIVE"), "1")
@@ -38,5 +41,18 @@ class MutationsTest(unittest.TestCase):
     def test_each_kind_of_change_is_made(self):
         text = "a = b * f(x, 2.0) - c;\n    if (!d) break;\n"
         found = {(text[begin:end].strip(), replacement.strip()) for begin, end, replacement in mutations.changes(text)}
-        self.assertLessEqual({("a = b * f(x, 2.0) - c;", ";"), ("*", "/"), ("-", "+"), ("* f(x, 2.0)", ""), ("b *", ""), ("2.0", "4.0"),
-                              ("x, 2.0", "2.0, x"), ("(!d)", "(!(!d))"), ("!", ""), ("if (!d) break;", ";")}, found)
+        self.assertLessEqual(
+            {
+                ("a = b * f(x, 2.0) - c;", ";"),
+                ("*", "/"),
+                ("-", "+"),
+                ("* f(x, 2.0)", ""),
+                ("b *", ""),
+                ("2.0", "4.0"),
+                ("x, 2.0", "2.0, x"),
+                ("(!d)", "(!(!d))"),
+                ("!", ""),
+                ("if (!d) break;", ";"),
+            },
+            found,
+        )

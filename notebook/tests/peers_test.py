@@ -22,6 +22,7 @@ def scene_named(name):
 
 class Constant:
     """A renderer whose pictures show the number of their call, and which takes at most 100 samples at once."""
+
     largest = 100
 
     def __init__(self):
@@ -34,9 +35,14 @@ class Constant:
 
 class SimpleScenesTest(unittest.TestCase):
     def test_what_no_peer_is_compared_on(self):
-        for name, words in (("microfacets", "microfacets of our formula.* and a background"), ("glossy", "a Phong lobe"),
-                            ("glass", "glass that absorbs"), ("milk", "media of meshes"), ("textured", "textures"),
-                            ("focus", "a lens")):
+        for name, words in (
+            ("microfacets", "microfacets of our formula.* and a background"),
+            ("glossy", "a Phong lobe"),
+            ("glass", "glass that absorbs"),
+            ("milk", "media of meshes"),
+            ("textured", "textures"),
+            ("focus", "a lens"),
+        ):
             with self.assertRaisesRegex(UserError, f"^A is not compared on scenes with.*{words}"):
                 simple_scenes.refuse_what_peers_lack(scene_named(name), "A")
         for name in ("cornell_box", "heart_light", "clear_glass", "fog", "lamps"):
@@ -72,7 +78,7 @@ class FilmTest(unittest.TestCase):
         self.assertEqual([(row["samples"], row["seconds"], row["cpu_seconds"]) for row in rows], [(16, 0.5, 1.0), (64, 0.5, 1.0)])
 
     def test_without_a_reference_there_is_no_error(self):
-        row, = film.separate_rows(film.Film(Constant(), None, 1), [16])
+        (row,) = film.separate_rows(film.Film(Constant(), None, 1), [16])
         self.assertEqual((row["rel_mse"], row["mean"]), (None, [2.5] * 3))
 
     def test_one_picture_grows(self):
@@ -90,10 +96,20 @@ class CommandTest(unittest.TestCase):
                 compare.refuse_without_peers()
 
     def test_a_setting_of_another_renderer_is_refused(self):
-        arguments = ["peer", "scene.json", "--variant=cycles", "--sampler=sobol", "--width=8", "--height=8", "--max-path-length=1",
-                     "--seed=1", "--samples=1"]
-        with (mock.patch.object(sys, "argv", arguments),
-              self.assertRaisesRegex(UserError, "cycles has no --sampler sobol: light_tree, no_light_tree")):
+        arguments = [
+            "peer",
+            "scene.json",
+            "--variant=cycles",
+            "--sampler=sobol",
+            "--width=8",
+            "--height=8",
+            "--max-path-length=1",
+            "--seed=1",
+            "--samples=1",
+        ]
+        with mock.patch.object(sys, "argv", arguments), self.assertRaisesRegex(
+            UserError, "cycles has no --sampler sobol: light_tree, no_light_tree"
+        ):
             peer.main()
 
     def test_more_repetitions_are_added_to_a_record(self):
@@ -104,8 +120,11 @@ class CommandTest(unittest.TestCase):
             rows = [{"samples": samples} for samples in (8, *compare.COUNTS)]
             return {"device": "a device", "rows": rows}
 
-        with (tempfile.TemporaryDirectory() as folder, mock.patch.object(compare, "refuse_without_peers"),
-              mock.patch.object(compare, "run_case", run_case)):
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            mock.patch.object(compare, "refuse_without_peers"),
+            mock.patch.object(compare, "run_case", run_case),
+        ):
             file = Path(folder) / "record.json"
             for repetitions in (2, 3):
                 with mock.patch.object(sys, "argv", ["renderers", f"--record={file}", f"--repetitions={repetitions}"]):

@@ -36,20 +36,27 @@ SMALL = ["--seconds=0.1", "--backend=compute", "--output=report"]
 class ReportTest(ProgramTest):
     def report(self, *arguments, code=0, environment=None):
         """Standard error of a run to the end."""
-        result, _, err = self.run_program("-B", PROJECT / "notebook", "report", *arguments, program=sys.executable, environment=environment)
+        result, _, err = self.run_program(
+            "-B", PROJECT / "notebook", "report", *arguments, program=sys.executable, environment=environment
+        )
         self.assertEqual(result, code, err)
         return err
 
     def test_what_does_not_go_together_is_refused(self):
-        for arguments, words in ((["--record=record.json", "torus"], "no scenes"), (["--record=record.json", "--peer=mitsuba", "torus"], "no scenes"),
-                                 (["torus", "--peer-sampler=multijitter"], "--peer mitsuba")):
+        for arguments, words in (
+            (["--record=record.json", "torus"], "no scenes"),
+            (["--record=record.json", "--peer=mitsuba", "torus"], "no scenes"),
+            (["torus", "--peer-sampler=multijitter"], "--peer mitsuba"),
+        ):
             self.assertIn(words, self.report(*arguments, code=1))
 
     def test_without_mitsuba_it_says_how_to_get_it(self):
         (self.folder / "bin").mkdir()
         self.write("bin/python3", f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n').chmod(0o755)
         environment = {"PATH": f"{self.folder / 'bin'}:/usr/bin:/bin"}
-        self.assertRegex(self.report("cornell_box", "--peer=mitsuba", code=1, environment=environment), "Mitsuba 3.*pip install mitsuba")
+        self.assertRegex(
+            self.report("cornell_box", "--peer=mitsuba", code=1, environment=environment), "Mitsuba 3.*pip install mitsuba"
+        )
 
     def test_a_record_can_be_shown_in_the_results(self):
         arguments = ["--record=record.json", "--backend=compute", "--seconds=0.2", "--repetitions=2"]
@@ -58,7 +65,10 @@ class ReportTest(ProgramTest):
         self.assertTrue(record["is_complete"])
         self.assertNotIn(str(PROJECT), json.dumps(record))
         self.assertIn("renderer", record["measured"])
-        self.assertRegex(chapter_tables(record), r"\| splitting factor 2 \| `--samples \d+ --splitting-factor 2` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(")
+        self.assertRegex(
+            chapter_tables(record),
+            r"\| splitting factor 2 \| `--samples \d+ --splitting-factor 2` \|[^|]*\|[^|]*\|[^|]*\| [\d.]+ \(",
+        )
 
     def with_mitsuba(self):
         """An environment in which chapter 3 replaces Mitsuba."""
@@ -71,11 +81,21 @@ class ReportTest(ProgramTest):
         arguments = ["cornell_box_1", "1", "4", "--peer=mitsuba", "--peer-sampler=multijitter", "--repetitions=2", *SMALL]
         self.report(*arguments, environment=self.with_mitsuba())
         scene, *others = json.loads((self.folder / "report/report.json").read_text())["scenes"]
-        self.assertEqual(len(others), 0 if "CPU" in json.loads((self.folder / "report/record.json").read_text())["environment"]["driver"] else 1)  # large pictures
+        self.assertEqual(
+            len(others),
+            0 if "CPU" in json.loads((self.folder / "report/record.json").read_text())["environment"]["driver"] else 1,
+        )  # large pictures
         cases = {case["case"]: case for case in scene["cases"]}
-        self.assertEqual({name: case["options"] for name, case in cases.items()}, {
-            "chapter 1": "", "chapter 4": "", "Mitsuba scalar": "--sampler independent",
-            "Mitsuba LLVM": "--sampler independent", "Mitsuba LLVM, multijitter": "--sampler multijitter"})
+        self.assertEqual(
+            {name: case["options"] for name, case in cases.items()},
+            {
+                "chapter 1": "",
+                "chapter 4": "",
+                "Mitsuba scalar": "--sampler independent",
+                "Mitsuba LLVM": "--sampler independent",
+                "Mitsuba LLVM, multijitter": "--sampler multijitter",
+            },
+        )
         self.assertEqual([case["paths_per_sample"] for case in cases.values()], [1, 4, 1, 1, 1])
         gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
         self.assertEqual(len(gains), 5 * 3 - 3)
@@ -92,9 +112,14 @@ class ReportTest(ProgramTest):
         record = json.loads((self.folder / "record.json").read_text())
         self.assertTrue(record["is_complete"])
         cases = {case["case"]: case for case in record["cases"]}
-        self.assertEqual({name: case["backend"] for name, case in cases.items() if not case["is_peer"]},
-                         {"compute": "compute", "native, one by one": "native", "native, lanes": "native"})
-        self.assertEqual([name for name, case in cases.items() if case["is_peer"]], ["Mitsuba scalar", "Mitsuba LLVM", "Mitsuba LLVM, multijitter"])
+        self.assertEqual(
+            {name: case["backend"] for name, case in cases.items() if not case["is_peer"]},
+            {"compute": "compute", "native, one by one": "native", "native, lanes": "native"},
+        )
+        self.assertEqual(
+            [name for name, case in cases.items() if case["is_peer"]],
+            ["Mitsuba scalar", "Mitsuba LLVM", "Mitsuba LLVM, multijitter"],
+        )
         rows = cpu_table(record).splitlines()
         self.assertRegex(rows[0], r", \d+ cores, llvmpipe.*, and ")
         self.assertEqual(len(rows), 4 + len(cases))

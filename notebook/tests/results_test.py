@@ -12,18 +12,43 @@ import project
 from docs import page_plots
 from docs.tables import DOCS, PAGES
 from report import sources as digests
-from tables import ages, best_table, confusion_table, cpu_table, export, peer_table, records, renderer_table, result_plots, sources
+from tables import (
+    ages,
+    best_table,
+    confusion_table,
+    cpu_table,
+    export,
+    peer_table,
+    records,
+    renderer_table,
+    result_plots,
+    sources,
+)
 
 SPEEDS = {"chapter 3": 4.0, "chapter 5": 2.0, "Mitsuba scalar": 0.1, "Mitsuba CUDA": 1.0}
 
 
 def scene_of_peers(name, width, speeds):
     """A scene of a report, with exact gains. If a case has no speed, its error was lost in noise."""
-    gains = [{"case": case, "peer": peer, "gain": [speeds[case] / speeds[peer] if speeds[case] else None, None, None]}
-             for case in speeds for peer in speeds if peer != case and peer.startswith("Mitsuba")]
-    cases = [{"case": case, "is_peer": case.startswith("Mitsuba"), "backend": "compute", "samples_per_second": 2e9,
-              "paths_per_second": 8e9, "error_of_one_sample": 0.5, "seconds_to_target": [1.0, None, None],
-              "start_up_seconds": [0.5, None, None]} for case in speeds]
+    gains = [
+        {"case": case, "peer": peer, "gain": [speeds[case] / speeds[peer] if speeds[case] else None, None, None]}
+        for case in speeds
+        for peer in speeds
+        if peer != case and peer.startswith("Mitsuba")
+    ]
+    cases = [
+        {
+            "case": case,
+            "is_peer": case.startswith("Mitsuba"),
+            "backend": "compute",
+            "samples_per_second": 2e9,
+            "paths_per_second": 8e9,
+            "error_of_one_sample": 0.5,
+            "seconds_to_target": [1.0, None, None],
+            "start_up_seconds": [0.5, None, None],
+        }
+        for case in speeds
+    ]
     return {"scene": name, "width": width, "height": width, "gains": gains, "cases": cases}
 
 
@@ -69,30 +94,49 @@ class PeerTableTest(unittest.TestCase):
 class BestTableTest(unittest.TestCase):
     def test_best_against_peers(self):
         speeds = SPEEDS | {"chapter 5": 5.0, "chapter 6": None, "Mitsuba CUDA, multijitter": 1.25}
-        record = record_of_peers(scene_of_peers("box_6_1024", 1024, speeds), scene_of_peers("empty_2", 128, {"Mitsuba CUDA": 1.0}))
-        self.assertEqual(list(best_table.against_peers(record)),
-                         [(("box", 1024, 1024), ["chapter 5", "Mitsuba CUDA, multijitter", "4.0"])])
+        record = record_of_peers(
+            scene_of_peers("box_6_1024", 1024, speeds), scene_of_peers("empty_2", 128, {"Mitsuba CUDA": 1.0})
+        )
+        self.assertEqual(
+            list(best_table.against_peers(record)), [(("box", 1024, 1024), ["chapter 5", "Mitsuba CUDA, multijitter", "4.0"])]
+        )
 
     def chapter(self, name, error, scene="box_6"):
         runs = [{"seed": seed, "rows": [{"rel_mse": error, "device_seconds": 2.0}]} for seed in (1, 2)]
         return {"case": name, "scene": scene, "width": 128, "height": 128, "reference": None, "runs": runs}
 
     def test_best_among_chapters(self):
-        cases = [self.chapter("chapter 1", 8.0), self.chapter("chapter 3", 0.5), self.chapter("chapter 4", 1.0),
-                 self.chapter("strategy both", 0.1), self.chapter("chapter 5", 1.0, "heart_4")]
-        self.assertEqual(list(best_table.among_chapters({"cases": cases})),
-                         [(("box", 128, 128), ["chapter 3", "16 (16 – 16)"]), (("heart", 128, 128), ["chapter 5", "1"])])
+        cases = [
+            self.chapter("chapter 1", 8.0),
+            self.chapter("chapter 3", 0.5),
+            self.chapter("chapter 4", 1.0),
+            self.chapter("strategy both", 0.1),
+            self.chapter("chapter 5", 1.0, "heart_4"),
+        ]
+        self.assertEqual(
+            list(best_table.among_chapters({"cases": cases})),
+            [(("box", 128, 128), ["chapter 3", "16 (16 – 16)"]), (("heart", 128, 128), ["chapter 5", "1"])],
+        )
 
 
 class CpuTableTest(unittest.TestCase):
     def test_times_faster_by_both_clocks(self):
         def case(name, seconds, cpu_seconds, error=0.5):
             row = {"rel_mse": error, "seconds": seconds, "cpu_seconds": cpu_seconds}
-            return {"case": name, "scene": "box_6", "width": 100, "height": 100, "samples": 10, "reference": None,
-                    "runs": [{"seed": seed, "rows": [row]} for seed in (1, 2)]}
+            return {
+                "case": name,
+                "scene": "box_6",
+                "width": 100,
+                "height": 100,
+                "samples": 10,
+                "reference": None,
+                "runs": [{"seed": seed, "rows": [row]} for seed in (1, 2)],
+            }
 
-        record = {"environment": {"processor": "a CPU", "cores": 4, "device": "a driver", "peer": "Mitsuba"},
-                  "cases": [case("native", 2.0, 4.0, 0.25), case("Mitsuba LLVM", 1.0, 4.0)]}
+        record = {
+            "environment": {"processor": "a CPU", "cores": 4, "device": "a driver", "peer": "Mitsuba"},
+            "cases": [case("native", 2.0, 4.0, 0.25), case("Mitsuba LLVM", 1.0, 4.0)],
+        }
         self.assertEqual(cpu_table.cpu_gains(record, "seconds"), {"box": {"native": [1.0, 1.0, 1.0]}})
         text = cpu_table.cpu_table(record)
         self.assertIn("a CPU, 4 cores, a driver, and Mitsuba.", text)
@@ -104,16 +148,38 @@ class CpuTableTest(unittest.TestCase):
 class RendererTableTest(unittest.TestCase):
     def case(self, name, errors, cpu_seconds, is_peer=True):
         """Two runs with the same errors, whose means differ by 2 % around the reference's."""
-        rows = [[{"samples": samples, "rel_mse": error, "seconds": 1 + cpu_seconds, "cpu_seconds": cpu_seconds, "mean": [mean] * 3,
-                  "difference": [0.01] * 3} for samples, error in zip(renderer_table.COUNTS, errors)] for mean in (0.99, 1.01)]
+        rows = [
+            [
+                {
+                    "samples": samples,
+                    "rel_mse": error,
+                    "seconds": 1 + cpu_seconds,
+                    "cpu_seconds": cpu_seconds,
+                    "mean": [mean] * 3,
+                    "difference": [0.01] * 3,
+                }
+                for samples, error in zip(renderer_table.COUNTS, errors)
+            ]
+            for mean in (0.99, 1.01)
+        ]
         reference = {"mean": [1.0] * 3, "variance": [0.0] * 3, "freedom": 10, "rel_mse_deviation": 0.0}
-        return {"case": name, "is_peer": is_peer, "scene": "box_6", "width": 100, "height": 100, "refused": None,
-                "program": "another" if is_peer else "10_path_regeneration", "reference": reference,
-                "runs": [{"seed": seed + 1, "rows": part} for seed, part in enumerate(rows)]}
+        return {
+            "case": name,
+            "is_peer": is_peer,
+            "scene": "box_6",
+            "width": 100,
+            "height": 100,
+            "refused": None,
+            "program": "another" if is_peer else "10_path_regeneration",
+            "reference": reference,
+            "runs": [{"seed": seed + 1, "rows": part} for seed, part in enumerate(rows)],
+        }
 
     def record(self):
-        cases = [self.case("chapter 10, native", [0.04, 0.01, 0.0025, 0.0005], 1.0, False),
-                 self.case("LuxCore, Sobol", [0.08, 0.03, 0.005, 0.002], 2.0)]
+        cases = [
+            self.case("chapter 10, native", [0.04, 0.01, 0.0025, 0.0005], 1.0, False),
+            self.case("LuxCore, Sobol", [0.08, 0.03, 0.005, 0.002], 2.0),
+        ]
         renderers = {"chapter 10, native": "a driver", "LuxCore, Sobol": "LuxCore 2"}
         return {"environment": {"processor": "a CPU", "cores": 2, "renderers": renderers}, "cases": cases}
 
@@ -176,7 +242,11 @@ class ResultPlotsTest(unittest.TestCase):
             text = file.read_text(encoding="utf-8")
             colours = set(re.findall(r"#[0-9a-f]{6}", text))
             self.assertTrue(colours <= {*page_plots.COLOURS, page_plots.GREY}, f"{file}: {colours}")
-            self.assertEqual(len(re.findall("<text", text)), len(re.findall("<text style=\"[^\"]*fill: #", text)), f"{file}: text without a colour is black")
+            self.assertEqual(
+                len(re.findall("<text", text)),
+                len(re.findall('<text style="[^"]*fill: #', text)),
+                f"{file}: text without a colour is black",
+            )
 
     def test_no_plot_has_a_colour_twice(self):
         for name, draw in result_plots.PLOTS.items():
@@ -206,7 +276,9 @@ class ResultPlotsTest(unittest.TestCase):
             file = Path(folder) / "plot.svg"
             result_plots.write_plot(file, "results_check")
             self.assertTrue(result_plots.is_fresh(file, "results_check"))
-            with mock.patch.object(result_plots, "rates", lambda record: confusion_table.rates({"trials": dict(list(record["trials"].items())[:50])})):
+            with mock.patch.object(
+                result_plots, "rates", lambda record: confusion_table.rates({"trials": dict(list(record["trials"].items())[:50])})
+            ):
                 self.assertFalse(result_plots.is_fresh(file, "results_check"))
 
 
@@ -223,9 +295,18 @@ class AgesTest(unittest.TestCase):
     RECORD = '{"program": "05_russian_roulette"}'
 
     def test_comments_and_other_chapters_do_not_count(self):
-        with tempfile.TemporaryDirectory() as folder, mock.patch.object(digests, "ROOT", Path(folder)), mock.patch.object(project, "ROOT", Path(folder)):
-            files = {name: Path(folder) / name for name in ("shaders/a.glsl", "chapters/05_russian_roulette/path_trace.glsl",
-                     "chapters/05_russian_roulette/chapter.json", "chapters/04_splitting/path_trace.glsl")}
+        with tempfile.TemporaryDirectory() as folder, mock.patch.object(digests, "ROOT", Path(folder)), mock.patch.object(
+            project, "ROOT", Path(folder)
+        ):
+            files = {
+                name: Path(folder) / name
+                for name in (
+                    "shaders/a.glsl",
+                    "chapters/05_russian_roulette/path_trace.glsl",
+                    "chapters/05_russian_roulette/chapter.json",
+                    "chapters/04_splitting/path_trace.glsl",
+                )
+            }
             for file in files.values():
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text('{"options": ["a"], "measure": {}}' if file.suffix == ".json" else "a = 1;  // one\n")
@@ -233,11 +314,14 @@ class AgesTest(unittest.TestCase):
             self.assertEqual(list(before), ["renderer", "russian_roulette"])
             record = {"measured": before}
             self.assertEqual(sources.changed_since(record), [])
-            for name, text, changed in (("shaders/a.glsl", "a =  1; // two\n", []), ("shaders/a.glsl", "a = 2;", ["renderer"]),
-                                        ("chapters/04_splitting/path_trace.glsl", "b", []),
-                                        ("chapters/05_russian_roulette/chapter.json", '{"options": ["a"], "measure": {"picture": "b"}}', []),
-                                        ("chapters/05_russian_roulette/chapter.json", '{"options": ["b"]}', ["russian_roulette"]),
-                                        ("chapters/05_russian_roulette/path_trace.glsl", "b", ["russian_roulette"])):
+            for name, text, changed in (
+                ("shaders/a.glsl", "a =  1; // two\n", []),
+                ("shaders/a.glsl", "a = 2;", ["renderer"]),
+                ("chapters/04_splitting/path_trace.glsl", "b", []),
+                ("chapters/05_russian_roulette/chapter.json", '{"options": ["a"], "measure": {"picture": "b"}}', []),
+                ("chapters/05_russian_roulette/chapter.json", '{"options": ["b"]}', ["russian_roulette"]),
+                ("chapters/05_russian_roulette/path_trace.glsl", "b", ["russian_roulette"]),
+            ):
                 kept = files[name].read_text()
                 files[name].write_text(text)
                 self.assertEqual(sources.changed_since(record), changed, (name, text))

@@ -36,15 +36,23 @@ vec3 get_own_brdf(ShadingData s, vec3 in_direction) {
     return brdf;
 }
 """
-WRONG = [{"name": "own-brdf-twice", "explanation": "The BRDF is added twice.", "find": "vec3 brdf = s.diffuse_albedo / PI;",
-          "replace": "vec3 brdf = 2.0 * s.diffuse_albedo / PI;"}]
+WRONG = [
+    {
+        "name": "own-brdf-twice",
+        "explanation": "The BRDF is added twice.",
+        "find": "vec3 brdf = s.diffuse_albedo / PI;",
+        "replace": "vec3 brdf = 2.0 * s.diffuse_albedo / PI;",
+    }
+]
 
 
 class Tree:
     """The project with one more chapter, configured from scratch. Only that chapter is built: the framework is unchanged."""
 
     def run_in_tree(self, *command, **environment):
-        result = subprocess.run(list(map(str, command)), cwd=self.tree, capture_output=True, text=True, env=os.environ | environment)
+        result = subprocess.run(
+            list(map(str, command)), cwd=self.tree, capture_output=True, text=True, env=os.environ | environment
+        )
         self.assertEqual(result.returncode, 0, f"{command}: {result.stdout[-2000:]}{result.stderr[-2000:]}")
         return result.stdout
 
@@ -55,8 +63,18 @@ class Tree:
     def setUp(self):
         super().setUp()
         self.tree = self.folder / "lab"
-        copy_project(self.tree, "docs", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab", "README.md", ".clang-format",
-                     linked=("common", "assets", "tests"))
+        copy_project(
+            self.tree,
+            "docs",
+            "CMakeLists.txt",
+            "CMakePresets.json",
+            "Containerfile",
+            "LICENSE",
+            "lab",
+            "README.md",
+            ".clang-format",
+            linked=("common", "assets", "tests"),
+        )
         self.chapter = self.tree / "chapters" / COPY
         shutil.copytree(self.tree / "chapters" / SOURCE, self.chapter)
 
@@ -69,8 +87,10 @@ class Tree:
             program.parent.mkdir(parents=True)
             return shutil.copy(self.built, program)
         cache = (BINARIES.parent / "CMakeCache.txt").read_text()
-        same = [f"-D{name}={re.search(rf'^{name}:.*=(.*)$', cache, re.MULTILINE)[1]}"
-                for name in ("CMAKE_BUILD_TYPE", "CMAKE_CXX_FLAGS", "CMAKE_CXX_COMPILER", "LAB_SANITIZE")]
+        same = [
+            f"-D{name}={re.search(rf'^{name}:.*=(.*)$', cache, re.MULTILINE)[1]}"
+            for name in ("CMAKE_BUILD_TYPE", "CMAKE_CXX_FLAGS", "CMAKE_CXX_COMPILER", "LAB_SANITIZE")
+        ]
         self.run_in_tree("cmake", "-S", ".", "-B", "build", "-G", "Ninja", *same)
         commands = self.run_in_tree("ninja", "-C", "build", "-t", "commands", COPY).splitlines()
         own = [command for command in commands if f"{COPY}.dir" in command]
@@ -98,11 +118,16 @@ class Tree:
         (self.chapter / "mistakes.json").write_text(json.dumps(WRONG), encoding="utf-8")
         shader = self.chapter / "path_trace.glsl"
         text = shader.read_text(encoding="utf-8").replace(
-            '#include "sample_hemisphere.glsl"', '#include "sample_concentrically.glsl"\n#include "lambertian.glsl"')
+            '#include "sample_hemisphere.glsl"', '#include "sample_concentrically.glsl"\n#include "lambertian.glsl"'
+        )
         text = text.replace("sample_hemisphere(", "sample_concentrically(").replace("get_brdf(", "get_own_brdf(")
         shader.write_text(text, encoding="utf-8")
-        exercise = {"file": "lambertian.glsl", "first": "vec3 brdf = s.diffuse_albedo / PI;", "last": "return brdf;",
-                    "placeholder": ["// TODO: the BRDF.", "return vec3(0.0);"]}
+        exercise = {
+            "file": "lambertian.glsl",
+            "first": "vec3 brdf = s.diffuse_albedo / PI;",
+            "last": "return brdf;",
+            "placeholder": ["// TODO: the BRDF.", "return vec3(0.0);"],
+        }
         self.rename("Concentric sampling: a map of another kind", exercise=exercise)
 
     def run_tests(self, kind, tests):
@@ -136,27 +161,37 @@ class AddedChapterTest(Tree, ProgramTest):
         difference = self.run_in_tree("./lab", "diff", 20)
         self.assertIn(f"+ chapters/{COPY}/path_trace.glsl", difference)
         self.assertIn("Chapter 3 to 20: 0 lines of code", difference)
-        names = self.run_in_tree(sys.executable, "-B", "-c",
-                                 "import sys; sys.path.append('tools'); from docs import tables; print(tables.PAGES)")
+        names = self.run_in_tree(
+            sys.executable, "-B", "-c", "import sys; sys.path.append('tools'); from docs import tables; print(tables.PAGES)"
+        )
         self.assertIn(COPY, names)
         self.run_in_tree(sys.executable, "-B", "tools", "tables", "--check")
         bugs = self.run_in_tree(sys.executable, "-B", "tools", "bug", 20)
         self.assertEqual(bugs.replace("bug 20", "bug 3"), self.run_in_tree(sys.executable, "-B", "tools", "bug", 3))
         self.rename()
         self.assertNotIn("Chapter 3 to 20", self.run_in_tree("./lab", "diff", 20))
-        self.assert_refused(["-B", self.tree / "tools", "check", 20], "chapter 20 has a title of its own", "notebook learn", code=2,
-                            program=sys.executable)
+        self.assert_refused(
+            ["-B", self.tree / "tools", "check", 20],
+            "chapter 20 has a title of its own",
+            "notebook learn",
+            code=2,
+            program=sys.executable,
+        )
 
     def test_is_in_the_handout_and_its_exercise_is_a_todo(self):
         self.run_in_tree(sys.executable, "-B", "tools", "handout", 20, self.folder / "handout")
         handed_out = self.folder / "handout/chapters" / COPY
-        self.assertEqual(sorted(path.name for path in handed_out.iterdir() if path.suffix != ".json"),
-                         ["README.md", "direct_light.glsl", "path_trace.glsl"])
+        self.assertEqual(
+            sorted(path.name for path in handed_out.iterdir() if path.suffix != ".json"),
+            ["README.md", "direct_light.glsl", "path_trace.glsl"],
+        )
         self.assertIn("TODO", (handed_out / "direct_light.glsl").read_text(encoding="utf-8"))
 
     def test_the_tests_of_estimators_take_it_up(self):
         self.rename()
-        self.run_tests("shaders", f"*LightPoints*/chapter_{COPY}:*FeatureCode.OfABareScene*/chapter_{COPY}:CosineSampling.Weights*")
+        self.run_tests(
+            "shaders", f"*LightPoints*/chapter_{COPY}:*FeatureCode.OfABareScene*/chapter_{COPY}:CosineSampling.Weights*"
+        )
 
     def test_brings_a_technique_and_a_material_of_its_own(self):
         program = self.build()

@@ -172,7 +172,9 @@ class MeshFiles(ProgramTest):
 
 def one_coloured_hdr(width, height):
     """A light probe with radiance 1 everywhere, in uncompressed rows."""
-    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width) + bytes([128, 128, 128, 129]) * (width * height)
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width) + bytes([128, 128, 128, 129]) * (
+        width * height
+    )
 
 
 class ImageFiles(ProgramTest):
@@ -213,14 +215,16 @@ class ImageFiles(ProgramTest):
             radiance = np.ones((2, 4, 3), np.float32)
             radiance[1, 2, 0] = number
             write_exr(self.use_light_probe("bad.exr"), rgb_channels(radiance), {})
-            self.assert_refused(["quad.json"], r"bad\.exr: pixel \(2, 1\) is negative, infinite or not a number",
-                                program=SAMPLES_PROBES)
+            self.assert_refused(
+                ["quad.json"], r"bad\.exr: pixel \(2, 1\) is negative, infinite or not a number", program=SAMPLES_PROBES
+            )
 
     def test_light_probes_that_are_too_large(self):
         for width, height in ((16385, 1), (1, 16385)):
             self.use_light_probe("bad.hdr", one_coloured_hdr(width, height))
-            self.assert_refused(["quad.json"], rf"bad\.hdr: an image of {width} x {height} pixels", "16384",
-                                program=SAMPLES_PROBES)
+            self.assert_refused(
+                ["quad.json"], rf"bad\.hdr: an image of {width} x {height} pixels", "16384", program=SAMPLES_PROBES
+            )
 
     def test_light_probes_of_any_shape_cover_the_sphere(self):
         options = ["--width=16", "--height=16", "--samples=256", "--max-path-length=1", "--backend=compute", "--quiet"]

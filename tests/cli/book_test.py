@@ -134,8 +134,13 @@ class BookInBrowser_all(Site, unittest.TestCase):
         return found, {(Path(file), name) for file, name in links}
 
     def dead(self, links):
-        return [f"{file}#{name}" for file, name in links if not file.is_file() or
-                name and name not in (self.names.get(file) or re.findall(r'id="([^"]*)"', file.read_text(encoding="utf-8")))]
+        return [
+            f"{file}#{name}"
+            for file, name in links
+            if not file.is_file()
+            or name
+            and name not in (self.names.get(file) or re.findall(r'id="([^"]*)"', file.read_text(encoding="utf-8")))
+        ]
 
     def setUp(self):
         self.names = {}  # page: names that links may target
@@ -165,16 +170,24 @@ class BookInBrowser_all(Site, unittest.TestCase):
         results, _ = self.search("roulette")
         self.assertIn("Russian roulette", results)
         self.assertNotIn("// Chapter 5", results)  # of its shader
-        for query, *first in (("alias table", "Chapter 3: next event estimation"), ("solid angle", "Chapter 3: next event estimation"),
-                              ("get_brdf", "What your shader can use", "get_brdf"), ("happens(", "What your shader can use", "happens")):
+        for query, *first in (
+            ("alias table", "Chapter 3: next event estimation"),
+            ("solid angle", "Chapter 3: next event estimation"),
+            ("get_brdf", "What your shader can use", "get_brdf"),
+            ("happens(", "What your shader can use", "happens"),
+        ):
             results, titles = self.search(query)
-            self.assertEqual(titles[:len(first)], first, query)
+            self.assertEqual(titles[: len(first)], first, query)
             self.assertNotRegex(results, r"\\[A-Za-z(\[]", query)
 
     def test_code_fits(self):
         self.browser.resize(WIDE)
         self.addCleanup(self.browser.resize, NARROW)
-        pages = [*self.site.glob("chapters/*/index.html"), self.site / "docs/first_steps.html", self.site / "shaders/world/shading_data.glsl.html"]
+        pages = [
+            *self.site.glob("chapters/*/index.html"),
+            self.site / "docs/first_steps.html",
+            self.site / "shaders/world/shading_data.glsl.html",
+        ]
         for page in pages:
             self.browser.visit(page.as_uri())
             self.assertEqual(self.browser.evaluate(CUT_CODE), [], page)
@@ -185,12 +198,17 @@ class BookInBrowser_all(Site, unittest.TestCase):
             self.assertEqual(self.browser.evaluate(MISSED), [], name)
 
         def luminance(colour):
-            return sum(weight * (x / 12.92 if x <= 0.04 else ((x + 0.055) / 1.055) ** 2.4) for weight, x in zip((0.2126, 0.7152, 0.0722), colour / 255))
+            return sum(
+                weight * (x / 12.92 if x <= 0.04 else ((x + 0.055) / 1.055) ** 2.4)
+                for weight, x in zip((0.2126, 0.7152, 0.0722), colour / 255)
+            )
 
         self.browser.visit((self.site / "shaders/world/shading_data.glsl.html").as_uri())
         for scheme in ("default", "slate"):
             self.browser.evaluate(f"document.body.setAttribute('data-md-color-scheme', '{scheme}')")
-            text, behind = (np.array([*map(float, re.findall(r"[\d.]+", colour)), 1])[:4] for colour in self.browser.evaluate(COLOURS))
+            text, behind = (
+                np.array([*map(float, re.findall(r"[\d.]+", colour)), 1])[:4] for colour in self.browser.evaluate(COLOURS)
+            )
             dark, bright = sorted(map(luminance, (behind[:3] + text[3] * (text - behind)[:3], behind[:3])))
             self.assertGreaterEqual((bright + 0.05) / (dark + 0.05), LEAST_CONTRAST, scheme)
 
@@ -198,30 +216,48 @@ class BookInBrowser_all(Site, unittest.TestCase):
         self.browser.visit((self.site / "docs/results.html").as_uri())
         for name in ("ideas", "mitsuba", "features", "cpu_backends"):
             figure = ElementTree.parse(PROJECT / f"docs/pictures/results_{name}.svg").getroot()
-            lines = [path.get("d") for path in figure.iter("{http://www.w3.org/2000/svg}path") if "stroke-width: 1.5" in path.get("style", "")]
+            lines = [
+                path.get("d")
+                for path in figure.iter("{http://www.w3.org/2000/svg}path")
+                if "stroke-width: 1.5" in path.get("style", "")
+            ]
             place = float(re.match(r"M ([\d.]+)", lines[0])[1]) / float(figure.get("viewBox").split()[2])
-            right = self.browser.evaluate(f"(image => image.x + {place} * image.width)(document.querySelector('img[src$=\"results_{name}.svg\"]'))")
+            right = self.browser.evaluate(
+                f"(image => image.x + {place} * image.width)(document.querySelector('img[src$=\"results_{name}.svg\"]'))"
+            )
             self.assertLess(right, NARROW - 20, name)
 
     def test_broken_pages_are_found(self):
         text = (self.site / "index.html").read_text(encoding="utf-8")
         page = self.site / "broken.html"
         self.addCleanup(page.unlink)
-        for broken, words in (('<a href="nowhere.html">', "nowhere.html"), ('<a href="docs/slides.html#nowhere">', "#nowhere"),
-                              ("$x^2$", "formula"), (r'<span class="arithmatex">\(\frac{\)</span>', "formula"),
-                              ('<img src="nothing.png">', "nothing.png"), ('<img src="http://example.org/a.png">', "from elsewhere"),
-                              ("<script>console.error('broken')</script>", "broken"), ("<script>nothing()</script>", "nothing"),
-                              ('<div style="width: 999px">', "too wide")):
+        for broken, words in (
+            ('<a href="nowhere.html">', "nowhere.html"),
+            ('<a href="docs/slides.html#nowhere">', "#nowhere"),
+            ("$x^2$", "formula"),
+            (r'<span class="arithmatex">\(\frac{\)</span>', "formula"),
+            ('<img src="nothing.png">', "nothing.png"),
+            ('<img src="http://example.org/a.png">', "from elsewhere"),
+            ("<script>console.error('broken')</script>", "broken"),
+            ("<script>nothing()</script>", "nothing"),
+            ('<div style="width: 999px">', "too wide"),
+        ):
             page.write_text(text.replace("</article>", f"{broken}</article>"), encoding="utf-8")
             found, links = self.problems(page)
             self.assertIn(words, " ".join(found + self.dead(links)), broken)
 
 
-
 class SearchTest(unittest.TestCase):
     def test_formulas_are_plain_text(self):
-        for tex, text in ((r"\frac{\pi}{2} u_y", "(π)/(2) u_y"), (r"\frac{1}{\frac{a}{b}}", "(1)/((a)/(b))"), (r"\mathrm{d}\omega \ge \cos\theta", "dω ≥ cosθ"),
-                          (r"\left( x \cdot y \right)", "( x · y )"), (r"\int L \thinspace \mathrm{d}A", "∫ L dA"), (r"\{a\}", "a"), ("", "")):
+        for tex, text in (
+            (r"\frac{\pi}{2} u_y", "(π)/(2) u_y"),
+            (r"\frac{1}{\frac{a}{b}}", "(1)/((a)/(b))"),
+            (r"\mathrm{d}\omega \ge \cos\theta", "dω ≥ cosθ"),
+            (r"\left( x \cdot y \right)", "( x · y )"),
+            (r"\int L \thinspace \mathrm{d}A", "∫ L dA"),
+            (r"\{a\}", "a"),
+            ("", ""),
+        ):
             self.assertEqual(search.plain_formula(tex), text)
 
 
@@ -232,7 +268,12 @@ class CopiesTest(unittest.TestCase):
             for name in ("chapters", "docs", "tools"):
                 shutil.copytree(PROJECT / name, project / name, ignore=shutil.ignore_patterns("records", "__pycache__"))
             shutil.copytree(project / "chapters/01_uniform_sampling", project / "chapters/20_mine")
-            listed = [sys.executable, "-B", "-c", "import sys; sys.path.insert(0, 'tools'); from book.build import navigation; print(navigation(True))"]
+            listed = [
+                sys.executable,
+                "-B",
+                "-c",
+                "import sys; sys.path.insert(0, 'tools'); from book.build import navigation; print(navigation(True))",
+            ]
             pages = subprocess.run(listed, cwd=project, capture_output=True, text=True, check=True).stdout
         self.assertIn("chapters/01_uniform_sampling/README.md", pages)
         self.assertNotIn("20_mine", pages)
@@ -241,7 +282,8 @@ class CopiesTest(unittest.TestCase):
 class ReadabilityTest(unittest.TestCase):
     def test_pages_can_be_finished(self):
         most = {"docs/results.md": 1800, "docs/first_steps.md": 1600, "docs/teaching.md": 2000} | {
-            f"chapters/{folder}/README.md": 1500 for folder in CHAPTERS.values()}
+            f"chapters/{folder}/README.md": 1500 for folder in CHAPTERS.values()
+        }
         for page, words in most.items():
             self.assertLessEqual(readability.length((PROJECT / page).read_text(encoding="utf-8")), words, page)
 

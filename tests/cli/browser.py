@@ -18,12 +18,26 @@ class Browser:
         self.answers, write_answers = os.pipe()
         # WebGL on the CPU, whatever GPU there is.
         graphics = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        command = [CHROMIUM, "--headless=new", "--no-sandbox", *graphics, "--no-first-run", "--remote-debugging-pipe",
-                   "--host-resolver-rules=MAP * ~NOTFOUND", f"--user-data-dir={self.profile.name}", "about:blank"]
+        command = [
+            CHROMIUM,
+            "--headless=new",
+            "--no-sandbox",
+            *graphics,
+            "--no-first-run",
+            "--remote-debugging-pipe",
+            "--host-resolver-rules=MAP * ~NOTFOUND",
+            f"--user-data-dir={self.profile.name}",
+            "about:blank",
+        ]
         # Chromium reads commands from descriptor 3 and writes answers to descriptor 4.
         shell = ["bash", "-c", f'exec 3<&{read_commands} 4>&{write_answers}; exec "$@"', "browser", *command]
-        self.process = subprocess.Popen(shell, pass_fds=(read_commands, write_answers), stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(
+            shell,
+            pass_fds=(read_commands, write_answers),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         os.close(read_commands)
         os.close(write_answers)
         self.buffer, self.number, self.session, self.events = b"", 0, None, []

@@ -19,12 +19,32 @@ STACK = "BVH_STACK_SIZE 32"
 # What scenes may have: the Cornell box, meshes with everything, a sky, and rough materials.
 FEATURES = {
     "lamps": [STACK, "FEATURE_LIGHT_TRIANGLES"],
-    "meshes": [STACK, "FEATURE_TRANSFORMS", "FEATURE_VERTEX_NORMALS", "FEATURE_TEXTURES", "TEXTURE_COUNT 1", "FEATURE_LIGHT_TRIANGLES",
-               "FEATURE_DOUBLE_SIDED", "FEATURE_SPECULAR", "FEATURE_DIELECTRICS", "FEATURE_ABSORPTION"],
+    "meshes": [
+        STACK,
+        "FEATURE_TRANSFORMS",
+        "FEATURE_VERTEX_NORMALS",
+        "FEATURE_TEXTURES",
+        "TEXTURE_COUNT 1",
+        "FEATURE_LIGHT_TRIANGLES",
+        "FEATURE_DOUBLE_SIDED",
+        "FEATURE_SPECULAR",
+        "FEATURE_DIELECTRICS",
+        "FEATURE_ABSORPTION",
+    ],
     "probe": [STACK, "FEATURE_LIGHT_PROBE", "FEATURE_LIGHT_PROBE_CELLS", "FEATURE_LIGHT_TRIANGLES"],
-    "microfacets": [STACK, "FEATURE_MICROFACETS", "FEATURE_MULTIPLE_SCATTERING", "FEATURE_LIGHT_TRIANGLES", "FEATURE_DIELECTRICS"],
+    "microfacets": [
+        STACK,
+        "FEATURE_MICROFACETS",
+        "FEATURE_MULTIPLE_SCATTERING",
+        "FEATURE_LIGHT_TRIANGLES",
+        "FEATURE_DIELECTRICS",
+    ],
 }
-FEATURES["everything"] = [STACK, "TEXTURE_COUNT 1", *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)})]
+FEATURES["everything"] = [
+    STACK,
+    "TEXTURE_COUNT 1",
+    *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)}),
+]
 NOTEBOOK = PROJECT / "notebook"
 
 
@@ -49,8 +69,10 @@ def others():
     for folder in NOTEBOOK.glob("submissions/*/*/"):
         chapter = read_json(folder / "submission.json")["chapter"]
         own = {file.name: file for file in reversed(shaders_of(chapter))}
-        yield chapter, path_of(folder), {path_of(own.get(file.name, PROJECT / "chapters" / CHAPTERS[chapter] / file.name)): text_of(file)
-                                         for file in folder.glob("*.glsl")}
+        yield chapter, path_of(folder), {
+            path_of(own.get(file.name, PROJECT / "chapters" / CHAPTERS[chapter] / file.name)): text_of(file)
+            for file in folder.glob("*.glsl")
+        }
     for file in NOTEBOOK.glob("variants/*/variants.json"):
         for variant in read_json(file):
             own = PROJECT / "chapters" / file.parent.name / variant.get("shader", "path_trace.glsl")
@@ -61,15 +83,25 @@ def others():
 class ShadersInBrowserTest(unittest.TestCase):
     def translate(self, jobs):
         """Writes files, as {file: (chapter, name, changed texts, feature)}."""
-        task = {"sources": live.shaders(), "jobs": [{"file": str(file), "chapter": CHAPTERS[chapter], "texts": changed, "defines": FEATURES[feature]}
-                                                    for file, (chapter, _, changed, feature) in jobs.items()]}
-        subprocess.run([NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True)
+        task = {
+            "sources": live.shaders(),
+            "jobs": [
+                {"file": str(file), "chapter": CHAPTERS[chapter], "texts": changed, "defines": FEATURES[feature]}
+                for file, (chapter, _, changed, feature) in jobs.items()
+            ],
+        }
+        subprocess.run(
+            [NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True
+        )
 
     def errors(self, texts, features=tuple(FEATURES)):
         """The errors of (chapter, name, changed texts), by name and features."""
         with tempfile.TemporaryDirectory() as folder:
-            jobs = {str(Path(folder) / f"{i}_{feature}.frag"): (chapter, name, changed, feature)
-                    for i, (chapter, name, changed) in enumerate(texts) for feature in features}
+            jobs = {
+                str(Path(folder) / f"{i}_{feature}.frag"): (chapter, name, changed, feature)
+                for i, (chapter, name, changed) in enumerate(texts)
+                for feature in features
+            }
             self.translate(jobs)
             output = subprocess.run([VALIDATOR, *jobs], capture_output=True, text=True).stdout
         self.assertGreater(len(jobs), 0)
@@ -83,13 +115,15 @@ class ShadersInBrowserTest(unittest.TestCase):
     def test_lines_know_their_places(self):
         path = path_of(PROJECT / "chapters" / CHAPTERS[3] / "path_trace.glsl")
         text = "#define PROBE(name, \\\n              value) int name = value\n/* two\nlines */ " + text_of(PROJECT / path)
-        text = text.replace("for (", "int probe_1;\nfor\n(\n", 1).replace("vec3 throughput", "PROBE(probe_2,\n2); int probe_3 = 1; vec3 throughput", 1)
+        text = text.replace("for (", "int probe_1;\nfor\n(\n", 1).replace(
+            "vec3 throughput", "PROBE(probe_2,\n2); int probe_3 = 1; vec3 throughput", 1
+        )
         text += "#if 0\nint probe_0;\n#endif\nint probe_4;\n"
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "places"
             self.translate({file: (3, "", {path: text}, "lamps")})
             found = re.findall(r"\b(probe_\d).*// (\S+):(\d+)$", file.read_text(encoding="utf-8"), re.MULTILINE)
-        lines = {name: 1 + text[:text.index(name)].count("\n") for name in ("probe_1", "probe_2", "probe_3", "probe_4")}
+        lines = {name: 1 + text[: text.index(name)].count("\n") for name in ("probe_1", "probe_2", "probe_3", "probe_4")}
         self.assertEqual(sorted(found), [(name, path, str(line)) for name, line in lines.items()])
 
     def test_the_list_of_files_that_chapters_replace_is_complete(self):
@@ -98,7 +132,9 @@ class ShadersInBrowserTest(unittest.TestCase):
         engine = [{file.name for room in ("engine", "world") for file in (PROJECT / "shaders" / room).rglob("*.glsl")}]
         replaced = set()
         for chapter in course():
-            own, *others = ({file.name for file in folder.glob("*.glsl")} for folder in continued(PROJECT / "chapters" / CHAPTERS[chapter]))
+            own, *others = (
+                {file.name for file in folder.glob("*.glsl")} for folder in continued(PROJECT / "chapters" / CHAPTERS[chapter])
+            )
             replaced |= own & set().union(*others, *engine) - {"path_trace.glsl"}
         self.assertEqual(replaced, replaceable)
 
@@ -106,16 +142,22 @@ class ShadersInBrowserTest(unittest.TestCase):
         self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})
 
     def test_solutions_and_exercises_compile(self):
-        texts = [(int(file.parts[-3][:2]), path_of(file), {f"chapters/{file.parts[-3]}/path_trace.glsl": text_of(file)})
-                 for file in PROJECT.glob("chapters/*/solutions/*.glsl")]
+        texts = [
+            (int(file.parts[-3][:2]), path_of(file), {f"chapters/{file.parts[-3]}/path_trace.glsl": text_of(file)})
+            for file in PROJECT.glob("chapters/*/solutions/*.glsl")
+        ]
         exercises = {chapter: live.exercise_of(CHAPTERS[chapter], live.shaders()) for chapter in course()}
         texts += [(chapter, f"exercise {chapter}", {e["file"]: e["text"]}) for chapter, e in exercises.items() if e]
         self.assertEqual(self.errors(texts), {})
 
     def test_names_of_the_engine_may_be_a_students(self):
         def texts_of(file):
-            helpers = {helper.relative_to(file.with_suffix("")).as_posix(): helper for helper in file.with_suffix("").rglob("*.glsl")}
-            return {f"chapters/{CHAPTERS[3]}/{name}": text_of(each) for name, each in ({"path_trace.glsl": file} | helpers).items()}
+            helpers = {
+                helper.relative_to(file.with_suffix("")).as_posix(): helper for helper in file.with_suffix("").rglob("*.glsl")
+            }
+            return {
+                f"chapters/{CHAPTERS[3]}/{name}": text_of(each) for name, each in ({"path_trace.glsl": file} | helpers).items()
+            }
 
         texts = [(3, file.name, texts_of(file)) for file in (PROJECT / "tests/browser/students").glob("*.glsl")]
         self.assertEqual(self.errors(texts, ["lamps", "meshes"]), {})
@@ -129,6 +171,6 @@ class ShadersInBrowserTest(unittest.TestCase):
 
     def test_what_only_other_ways_compile_is_refused(self):
         file = f"chapters/{CHAPTERS[1]}/path_trace.glsl"
-        for wrong in ("float x = 1;", "float y = 2.0 * 3;", 'float ω = 1.0;', '#include "missing.glsl"'):
+        for wrong in ("float x = 1;", "float y = 2.0 * 3;", "float ω = 1.0;", '#include "missing.glsl"'):
             text = f"{text_of(PROJECT / file)}\n{wrong}\n"
             self.assertEqual(len(self.errors([(1, wrong, {file: text})], ["lamps"])), 1, wrong)

@@ -28,7 +28,9 @@ class PlantedMistakesTest(unittest.TestCase):
 
     def test_shaders_have_the_places_of_all_mistakes(self):
         for planted in mistake.load().values():
-            mistakes.plant((PROJECT / planted["file"]).read_text(encoding="utf-8"), planted["find"], planted["replace"], planted["name"])
+            mistakes.plant(
+                (PROJECT / planted["file"]).read_text(encoding="utf-8"), planted["find"], planted["replace"], planted["name"]
+            )
 
 
 class Bugs:
@@ -56,7 +58,9 @@ class BugTest(Bugs, ProgramTest):
 
     def test_a_place_that_is_gone_is_told(self):
         moved = {"name": "moved", "find": "no such line", "replace": ""}
-        with mock.patch.object(mistakes, "read_json", return_value=[moved]), self.assertRaisesRegex(mistakes.Stale, "moved in chapters/03"):
+        with mock.patch.object(mistakes, "read_json", return_value=[moved]), self.assertRaisesRegex(
+            mistakes.Stale, "moved in chapters/03"
+        ):
             mistakes.bugs_of(3)
 
     def test_every_answer_names_what_catches_the_bug(self):
@@ -66,7 +70,9 @@ class BugTest(Bugs, ProgramTest):
             for found in mistakes.bugs_of(chapter):
                 test, command = bug.caught_by(found)
                 if "sanitizer" in found.mistake:
-                    self.assertEqual((test, command), (None, f"./lab bug {chapter} {index_of(chapter, found.mistake['name'])} --sanitize"))
+                    self.assertEqual(
+                        (test, command), (None, f"./lab bug {chapter} {index_of(chapter, found.mistake['name'])} --sanitize")
+                    )
                 elif test:
                     self.assertIn(re.fullmatch(r"\w+\.(?:\w+/)?(\w+)\.(\w+)(?:/\w+)?", test).groups(), known)
                     self.assertEqual(command, f"./lab test -R mistakes.{found.mistake['name']}")
@@ -121,7 +127,9 @@ class BugTest(Bugs, ProgramTest):
             self.bug(3, 1, "--window", "--scene", "check_room_2")
         arguments = (self.folder / "arguments").read_text()
         self.assertRegex(arguments, r"check_room\.json --window --shader [^ ]+ --max-path-length 2 ")
-        self.assertEqual((self.folder / "place").read_text(), str(mistakes.bugs_of(3)[0].file.relative_to(PROJECT / "chapters")) + "\n")
+        self.assertEqual(
+            (self.folder / "place").read_text(), str(mistakes.bugs_of(3)[0].file.relative_to(PROJECT / "chapters")) + "\n"
+        )
         self.assertEqual((self.folder / "shader").read_text(encoding="utf-8"), mistakes.bugs_of(3)[0].text)
 
     def test_what_there_is_not_is_refused(self):
@@ -129,7 +137,9 @@ class BugTest(Bugs, ProgramTest):
         self.assert_tool_refused(["bug", 99], "no chapter 99")
         self.assert_tool_refused(["bug", 3, 999], "bugs 1 to", "lists them")
         self.assert_tool_refused(["bug", 3, 0], "number from 1")
-        self.assert_tool_refused(["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene", "one of check_glass, .*cornell_box")
+        self.assert_tool_refused(
+            ["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene", "one of check_glass, .*cornell_box"
+        )
 
     def test_a_chapter_without_bugs_says_so(self):
         with mock.patch.object(bug, "bugs_of", return_value=[]), self.assertRaisesRegex(UserError, "chapter 1 has no bugs"):
@@ -142,7 +152,9 @@ class SanitizedBug_all(Bugs, ProgramTest):
         if not re.search(r"native +works", self.render("--list-devices")):
             self.skipTest("no device has the backend native")
         page = (PROJECT / "docs/debugging.md").read_text(encoding="utf-8")
-        chapter, index, finding = re.search(r"^    \./lab bug (\d+) (\d+) --sanitize\n\n```text\n(.*)\n```$", page, re.MULTILINE).groups()
+        chapter, index, finding = re.search(
+            r"^    \./lab bug (\d+) (\d+) --sanitize\n\n```text\n(.*)\n```$", page, re.MULTILINE
+        ).groups()
         self.assertEqual(int(index), index_of(int(chapter), "one-entry-too-far"))
         code, out, err = self.run_tool("bug", chapter, index, "--sanitize")
         self.assertEqual(code, 0, err)

@@ -17,7 +17,9 @@ def description(chapter):
 def options_of(chapter):
     """The chapter's own options."""
     says = description(chapter)
-    return ["--strategy"] * ("strategies" in says) + says.get("options", []) + [choice["name"] for choice in says.get("choices", [])]
+    return (
+        ["--strategy"] * ("strategies" in says) + says.get("options", []) + [choice["name"] for choice in says.get("choices", [])]
+    )
 
 
 class EveryChapter(ProgramTest):
@@ -55,6 +57,7 @@ class EveryChapter(ProgramTest):
 
 class SanitizedChapters_all(ProgramTest):
     """Neither indices nor arithmetic of any shader are wrong: --sanitize finds nothing."""
+
     REFUSALS = "dielectric.*use chapter 6|--view .* does not work with the backend native"
 
     def setUp(self):
@@ -65,8 +68,16 @@ class SanitizedChapters_all(ProgramTest):
     def find_nothing(self, chapter, *arguments):
         """Returns whether it rendered: the program may also refuse to."""
         with self.subTest(chapter=chapter, arguments=arguments):
-            code, _, err = self.run_program(*arguments, "--headless", "--width=16", "--height=16", "--samples=2", "--sanitize", "--quiet",
-                                            program=BINARIES / chapter)
+            code, _, err = self.run_program(
+                *arguments,
+                "--headless",
+                "--width=16",
+                "--height=16",
+                "--samples=2",
+                "--sanitize",
+                "--quiet",
+                program=BINARIES / chapter,
+            )
             if code == 0:
                 self.assertEqual(err, "")
             else:
@@ -93,8 +104,12 @@ class ChapterOptions(ProgramTest):
 
     def test_values_out_of_range(self):
         parts = ("0", "-0.5", "1.01", "nan", "inf")
-        for number, option, values in ((4, "--splitting-factor", ("0", "1000000", "1.5", "-2", "nan")), (5, "--survival-cap", parts),
-                                       (10, "--survival-weight", parts), (6, "--roulette-start", ("0", "-1", "2.5", "first"))):
+        for number, option, values in (
+            (4, "--splitting-factor", ("0", "1000000", "1.5", "-2", "nan")),
+            (5, "--survival-cap", parts),
+            (10, "--survival-weight", parts),
+            (6, "--roulette-start", ("0", "-1", "2.5", "first")),
+        ):
             for value in values:
                 self.refuse(number, f"{option}={value}")
 
@@ -122,12 +137,14 @@ class ChapterOptions(ProgramTest):
         self.assertRegex(self.render("quad.json", *TINY, program=program), r"up to 10000 bounces; .* below \de-\d+")
         self.assertNotIn("bounces", self.render("quad.json", *TINY, "--max-path-length=3", program=program))
         self.assertRegex(self.render("--help", program=program), r"--max-path-length (?s:.)*?or\s+else\s+10000")
-        self.write("short.json", QUAD_JSON.replace('{', '{"max_path_length": 3,', 1))
+        self.write("short.json", QUAD_JSON.replace("{", '{"max_path_length": 3,', 1))
         self.assertNotIn("bounces", self.render("short.json", *TINY, "--output=short.exr", program=program))
         self.assertIn("--max-path-length 3 ", Exr(self.folder / "short.exr").text("settings"))
         for material in ("d 0", "Pr 0.5", "Pr 0.5\nPm 1"):  # what reflects everything at grazing angles
             self.write("quad.mtl", QUAD_MTL + material + "\n")
-            self.assertRegex(self.render("quad.json", *TINY, program=BINARIES / CHAPTERS[10]), r"up to 10000 bounces; .* may be missing")
+            self.assertRegex(
+                self.render("quad.json", *TINY, program=BINARIES / CHAPTERS[10]), r"up to 10000 bounces; .* may be missing"
+            )
 
 
 class ChapterRenders(RenderTest):

@@ -19,13 +19,20 @@ LISTING = NOTING + "[ $1 != --gtest_list_tests ] || echo '  AreThree'\n"
 class LineEnds(ProgramTest):
     def test_a_checkout_of_git_for_windows_has_those_of_its_sources(self):
         prefix = ["git", "-c", "core.autocrlf=true", "checkout-index", f"--prefix={self.folder}/tree/", "--"]
-        files = ["lab", "chapters/01_uniform_sampling/path_trace.glsl", "tests/fuzz/seeds/obj/bare.obj", "assets/references/plates_3.exr"]
+        files = [
+            "lab",
+            "chapters/01_uniform_sampling/path_trace.glsl",
+            "tests/fuzz/seeds/obj/bare.obj",
+            "assets/references/plates_3.exr",
+        ]
         result = subprocess.run([*prefix, *files], cwd=PROJECT, capture_output=True, text=True)
         if "not a git repository" in result.stderr:
             self.skipTest("no repository")
         self.assertEqual(result.returncode, 0, result.stderr)
         for file in files:
-            recorded = subprocess.run(["git", "cat-file", "blob", f":{file}"], cwd=PROJECT, capture_output=True, check=True).stdout
+            recorded = subprocess.run(
+                ["git", "cat-file", "blob", f":{file}"], cwd=PROJECT, capture_output=True, check=True
+            ).stdout
             self.assertEqual((self.folder / "tree" / file).read_bytes(), recorded, file)
 
 
@@ -44,8 +51,11 @@ class WhatIsBuilt(ProgramTest):
         self.write("tree/tests/shaders/three_test.cpp", "TEST_P(ThreeThings, AreThree) {\nTEST(Other, IsOther) {\n")
         self.write("tree/tests/cli/four_test.py", "class FourTest(TestCase):\n")
         self.write("tree/CMakeLists.txt", "")
-        for name in ("lab", *(f"tools/{name}.py" for name in ("__main__", "project", "lesson/chapters")),
-                     *(f"tests/{name}.py" for name in ("__main__", "cited_tests", "test_report"))):
+        for name in (
+            "lab",
+            *(f"tools/{name}.py" for name in ("__main__", "project", "lesson/chapters")),
+            *(f"tests/{name}.py" for name in ("__main__", "cited_tests", "test_report")),
+        ):
             shutil.copy(PROJECT / name, self.folder / "tree" / name)
         for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", CHOOSING), ("ctest", NOTING)):
             self.write(f"tree/bin/{name}", script.format(notes=self.folder / "notes", python=sys.executable)).chmod(0o755)
@@ -60,7 +70,12 @@ class WhatIsBuilt(ProgramTest):
         return text
 
     def test_the_chapter_to_be_checked_is_built_wherever_its_number_stands(self):
-        for arguments in (["3", "--all", "work"], ["--all", "work", "3"], ["--teacher", "03", "mine.glsl"], ["--all", "12/work", "3"]):
+        for arguments in (
+            ["3", "--all", "work"],
+            ["--all", "work", "3"],
+            ["--teacher", "03", "mine.glsl"],
+            ["--all", "12/work", "3"],
+        ):
             noted = self.noted("check", *arguments)
             self.assertRegex(noted, r"(?m)^cmake --build .* --target 03_three$", arguments)
             self.assertRegex(noted, rf"(?m)^python3 .*/tools check {' '.join(arguments)}$")
@@ -69,8 +84,14 @@ class WhatIsBuilt(ProgramTest):
         self.assertRegex(self.noted("check", 20), r"(?m)^cmake --build .* --target 03_three 20_mine$")
 
     def test_tests_that_are_chosen_are_built_alone(self):
-        for regex, targets in (("ThreeThings", "shaders_tests"), ("shaders.*IsOther", "shaders_tests"), ("FourTest", "all only_in_all"),
-                               ("mistakes", "all only_in_all"), ("Nothing", "all only_in_all"), ("ThreeThings|FourTest", "all only_in_all")):
+        for regex, targets in (
+            ("ThreeThings", "shaders_tests"),
+            ("shaders.*IsOther", "shaders_tests"),
+            ("FourTest", "all only_in_all"),
+            ("mistakes", "all only_in_all"),
+            ("Nothing", "all only_in_all"),
+            ("ThreeThings|FourTest", "all only_in_all"),
+        ):
             noted = self.noted("test", "-R", regex, code=1)
             self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$", regex)
             self.assertRegex(noted, rf"(?m)^ctest .* -R {re.escape(regex)}$")
@@ -78,12 +99,20 @@ class WhatIsBuilt(ProgramTest):
     def test_the_name_of_a_test_may_not_be_missing(self):
         for arguments in (["test", "-R"], ["test", 3, "-R"]):
             self.assert_refused(arguments, "-R needs the name of a test", program=self.folder / "tree/lab")
-        self.assert_refused(["test", "-R", "("], "lab: -R needs a regular expression", program=self.folder / "tree/lab",
-                            environment={"PYTHONDONTWRITEBYTECODE": "1"})
+        self.assert_refused(
+            ["test", "-R", "("],
+            "lab: -R needs a regular expression",
+            program=self.folder / "tree/lab",
+            environment={"PYTHONDONTWRITEBYTECODE": "1"},
+        )
 
     def test_what_is_not_named_is_left_to_all(self):
-        for arguments, targets, choice in (((), "all", r" -LE \^all\$"), (("--all",), "all only_in_all", ""),
-                                           (("--quick",), "quick_tests", r" -L \^quick\$"), (("-I", "1,,6"), "all", r" -LE \^all\$ -I 1,,6")):
+        for arguments, targets, choice in (
+            ((), "all", r" -LE \^all\$"),
+            (("--all",), "all only_in_all", ""),
+            (("--quick",), "quick_tests", r" -L \^quick\$"),
+            (("-I", "1,,6"), "all", r" -LE \^all\$ -I 1,,6"),
+        ):
             noted = self.noted("test", *arguments, code=1)
             self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$")
             self.assertRegex(noted, rf"(?m)^ctest .*tests\.xml{choice}$")
@@ -93,8 +122,11 @@ class WhatIsBuilt(ProgramTest):
         self.write("tree/build/bin/shaders_three_test", LISTING.format(notes=self.folder / "notes")).chmod(0o755)
         noted = self.noted("test", 20)
         self.assertRegex(noted, r"(?m) --target shaders_three_test$")
-        self.assertRegex(noted, r"(?m)^shaders_three_test, copy 20_mine: --gtest_brief=1 --gtest_filter=ThreeThings\.\*:\*/ThreeThings\.\*:More\.\*:"
-                                r"\*/More\.\*-\*/chapter_12_twelve:\*/chapter_12_twelve_all:\*/chapter_20_mine:\*/chapter_20_mine_all$")
+        self.assertRegex(
+            noted,
+            r"(?m)^shaders_three_test, copy 20_mine: --gtest_brief=1 --gtest_filter=ThreeThings\.\*:\*/ThreeThings\.\*:More\.\*:"
+            r"\*/More\.\*-\*/chapter_12_twelve:\*/chapter_12_twelve_all:\*/chapter_20_mine:\*/chapter_20_mine_all$",
+        )
         self.assertNotIn("ctest", noted)
 
     def test_other_tests_may_be_chosen_for_a_copy(self):
@@ -105,15 +137,27 @@ class WhatIsBuilt(ProgramTest):
 
     def test_the_summary_counts_what_ran(self):
         """A run in which nothing runs has failed."""
-        cases = {"a.Passes": (1, "run", ""), "a.IsSlow": (22.5, "run", ""), "a.Fails": (3, "fail", "<failure/>"),
-                 "a.IsOff": (0, "disabled", ""), "a.NeedsXvfb": (0, "notrun", '<skipped message="SKIP_RETURN_CODE=77"/>'),
-                 "a.IsMissing": (0, "notrun", '<skipped message="Unable to find executable"/>')}
-        for names, code_of_ctest, code, last in ((cases, 8, 1, "2 passed, 2 failed, 2 skipped"),
-                                                 (["a.Passes", "a.IsSlow"], 0, 0, "2 passed, 0 failed"),
-                                                 (["a.IsOff"], 0, 1, "0 passed, 0 failed, 1 skipped")):
-            report = "".join('<testcase name="{}" time="{}" status="{}">{}</testcase>'.format(name, *cases[name]) for name in names)
+        cases = {
+            "a.Passes": (1, "run", ""),
+            "a.IsSlow": (22.5, "run", ""),
+            "a.Fails": (3, "fail", "<failure/>"),
+            "a.IsOff": (0, "disabled", ""),
+            "a.NeedsXvfb": (0, "notrun", '<skipped message="SKIP_RETURN_CODE=77"/>'),
+            "a.IsMissing": (0, "notrun", '<skipped message="Unable to find executable"/>'),
+        }
+        for names, code_of_ctest, code, last in (
+            (cases, 8, 1, "2 passed, 2 failed, 2 skipped"),
+            (["a.Passes", "a.IsSlow"], 0, 0, "2 passed, 0 failed"),
+            (["a.IsOff"], 0, 1, "0 passed, 0 failed, 1 skipped"),
+        ):
+            report = "".join(
+                '<testcase name="{}" time="{}" status="{}">{}</testcase>'.format(name, *cases[name]) for name in names
+            )
             self.write("report.xml", f"<testsuite>{report}</testsuite>")
-            self.write("tree/bin/ctest", f"#!/bin/sh\ncp {self.folder}/report.xml {self.folder}/tree/build/tests.xml\nexit {code_of_ctest}\n")
+            self.write(
+                "tree/bin/ctest",
+                f"#!/bin/sh\ncp {self.folder}/report.xml {self.folder}/tree/build/tests.xml\nexit {code_of_ctest}\n",
+            )
             path = f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"
             actual, out, err = self.run_program("test", program=self.folder / "tree/lab", environment={"PATH": path})
             self.assertEqual((actual, out.splitlines()[-1]), (code, last), err)

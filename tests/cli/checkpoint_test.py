@@ -62,8 +62,10 @@ class Interruption(RenderTest):
         """As nohup and the background jobs of scripts want it."""
         ignored = (signal.SIGINT, signal.SIGHUP, signal.SIGXCPU)
         file = self.folder / "ignored.exr"
-        with self.start(*self.command("--samples=4000000000", "--output", file, "--save-every=0.2", size=self.size),
-                        prepare=lambda: [signal.signal(number, signal.SIG_IGN) for number in ignored]) as process:
+        with self.start(
+            *self.command("--samples=4000000000", "--output", file, "--save-every=0.2", size=self.size),
+            prepare=lambda: [signal.signal(number, signal.SIG_IGN) for number in ignored],
+        ) as process:
             self.wait_for(file, process)
             for number in ignored:
                 process.send_signal(number)
@@ -105,8 +107,17 @@ class AnyMoment:
     def end(self, backend, number, seconds):
         file = self.write("any.exr", "earlier")
         limit = [] if number else [f"--time-limit={max(seconds, 0.001)}"]
-        with self.start("cornell_box", "--width=32", "--height=32", "--samples=4000000000", "--headless", f"--backend={backend}",
-                        f"--output={file}", *limit, environment=UNOPTIMISED) as process:
+        with self.start(
+            "cornell_box",
+            "--width=32",
+            "--height=32",
+            "--samples=4000000000",
+            "--headless",
+            f"--backend={backend}",
+            f"--output={file}",
+            *limit,
+            environment=UNOPTIMISED,
+        ) as process:
             self.assertIn(f"backend {backend}\n", process.stdout.readline())
             if number:
                 time.sleep(seconds)
@@ -169,8 +180,10 @@ class Checkpoints(RenderTest):
 
     def test_what_differs_is_named_and_nothing_else(self):
         self.picture("part", "--samples=4")
-        self.assert_refused([*self.command("--max-path-length=3", "--samples=8"), "--resume=part.exr", "--output=new.exr"],
-                            "settings '--max-path-length 8' against '--max-path-length 3'")
+        self.assert_refused(
+            [*self.command("--max-path-length=3", "--samples=8"), "--resume=part.exr", "--output=new.exr"],
+            "settings '--max-path-length 8' against '--max-path-length 3'",
+        )
 
     def test_a_merge_keeps_what_it_joins(self):
         self.picture("a", "--samples=2")
@@ -188,8 +201,10 @@ class Checkpoints(RenderTest):
     def test_saving_is_not_rendering(self):
         """Where writing takes longer than the interval, half of the time is left for rendering, and only that counts as seconds."""
         start = time.monotonic()
-        self.render(*self.command("--samples=4000000000", "--save-every=0.001", "--time-limit=3", "--output=saved.exr", size=(320, 320)),
-                    environment=SLOW_DISK | {"SLOW_DISK_LOG": "log"})
+        self.render(
+            *self.command("--samples=4000000000", "--save-every=0.001", "--time-limit=3", "--output=saved.exr", size=(320, 320)),
+            environment=SLOW_DISK | {"SLOW_DISK_LOG": "log"},
+        )
         total = time.monotonic() - start
         renamed = [line.split() for line in (self.folder / "log").read_text(encoding="utf-8").splitlines()]
         saves = [(float(begin), float(end)) for begin, end, file in renamed if file.endswith("saved.exr")]
@@ -240,8 +255,13 @@ class EditedShaders(RenderTest):
             stream.write(f"const float added_to_{Path(shader).stem} = 1.0;\n")
 
     def test_different_estimators_are_not_joined(self):
-        for shader in ("chapters/05_russian_roulette/path_trace.glsl", "chapters/03_next_event_estimation/direct_light.glsl",
-                       "chapters/02_cosine_sampling/sample_hemisphere.glsl", "shaders/world/random.glsl", "shaders/world/shading_data.glsl"):
+        for shader in (
+            "chapters/05_russian_roulette/path_trace.glsl",
+            "chapters/03_next_event_estimation/direct_light.glsl",
+            "chapters/02_cosine_sampling/sample_hemisphere.glsl",
+            "shaders/world/random.glsl",
+            "shaders/world/shading_data.glsl",
+        ):
             with self.subTest(shader=shader):
                 self.render_range("before", 0)
                 self.edit(shader)
@@ -287,7 +307,9 @@ class StoppingEarly(RenderTest):
 
     def test_a_film_without_radiance_has_an_unknown_error(self):
         """A lamp so tiny that no path has hit it yet: black does not mean exact."""
-        self.write("lamp.obj", QUAD_OBJ.replace("quad.mtl", "lamp.mtl") + "v 0 0 4\nv 0 1e-4 4\nv 1e-4 0 4\nusemtl lamp\nf 5 6 7\n")
+        self.write(
+            "lamp.obj", QUAD_OBJ.replace("quad.mtl", "lamp.mtl") + "v 0 0 4\nv 0 1e-4 4\nv 1e-4 0 4\nusemtl lamp\nf 5 6 7\n"
+        )
         self.write("lamp.mtl", QUAD_MTL + "newmtl lamp\nKe 1e6 1e6 1e6\n")
         scene = json.loads(QUAD_JSON) | {"meshes": [{"file": "lamp.obj"}], "background": {"radiance": [0, 0, 0]}}
         self.write("lamp.json", json.dumps(scene))

@@ -47,16 +47,25 @@ class Cluster:
         return SETTINGS + commands
 
     def run_shell(self, text, **variables):
-        result = subprocess.run(["bash", "-c", text], cwd=self.folder, env={**os.environ, **variables},
-                                capture_output=True, text=True, timeout=120)
+        result = subprocess.run(
+            ["bash", "-c", text], cwd=self.folder, env={**os.environ, **variables}, capture_output=True, text=True, timeout=120
+        )
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
     def assert_is_one_render(self, file, samples=10):
         """The picture equals that of a single render with all samples, to 2 ulp."""
         merged = Exr(self.folder / file)
         self.assertEqual(merged.text("samples"), str(samples))
-        self.render("cornell_box", "--backend=compute", "--width=24", "--height=20", f"--samples={samples}", "--quiet",
-                    "--output=one.exr", program=BINARIES / "05_russian_roulette")
+        self.render(
+            "cornell_box",
+            "--backend=compute",
+            "--width=24",
+            "--height=20",
+            f"--samples={samples}",
+            "--quiet",
+            "--output=one.exr",
+            program=BINARIES / "05_russian_roulette",
+        )
         self.assert_close(merged, Exr(self.folder / "one.exr"))
 
 
@@ -96,7 +105,9 @@ class ClusterRehearsal_all(Cluster, RenderTest):
     def test_slurm_requeues_a_task_whose_node_dies(self):
         script = self.block("A cluster").replace("--save-every 60", "--save-every 0.1")
         long = script.replace("samples=5", "samples=100000")
-        process = subprocess.Popen(["bash", "-c", long], cwd=self.folder, env={**os.environ, "SLURM_ARRAY_TASK_ID": "0"}, start_new_session=True)
+        process = subprocess.Popen(
+            ["bash", "-c", long], cwd=self.folder, env={**os.environ, "SLURM_ARRAY_TASK_ID": "0"}, start_new_session=True
+        )
         part, end = self.folder / "parts/0.exr", time.monotonic() + 60
         while not part.exists() and time.monotonic() < end:
             time.sleep(0.02)

@@ -32,32 +32,40 @@ class Information(ProgramTest):
     def test_options_without_effect_are_noted(self):
         lens, media = BINARIES / "12_lens", BINARIES / "13_media"
         self.write("foggy.json", '{"meshes": [{"file": "quad.obj"}], "fog": {"extinction": 1, "albedo": [0.5, 0.5, 0.5]}}')
-        for program, options, words in ((CHAPTER, ["--aperture-diameter=1"], "--aperture-diameter: 01_uniform_sampling leaves out its lens"),
-                                        (CHAPTER, ["--focus-distance=1"], "--focus-distance has no effect"),
-                                        (lens, ["--focus-distance=1"], "on a pinhole: give --aperture-diameter"),
-                                        (lens, ["--focus-distance=1", "--aperture-diameter=0.1"], None),
-                                        (lens, ["--focus-distance=1", "--view=focus"], None),
-                                        (CHAPTER, ["--specular"], "--specular has no effect"),
-                                        (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.hdr"], "--exposure has no effect"),
-                                        (CHAPTER, ["--exposure=1", "--view=normals"], "--exposure has no effect"),
-                                        (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.jpg"], None),
-                                        (CHAPTER, ["--exposure=1"], None),  # the default outputs have a PNG
-                                        (media, ["--background=1,1,1"], None),
-                                        (media, ["foggy.json", "--background=1,1,1"], "--background has no effect"),
-                                        (CHAPTER, ["--max-threads-per-pixel=2", "--backend=compute"], None),
-                                        (CHAPTER, ["--max-threads-per-pixel=2", "--backend=native"], "--max-threads-per-pixel has no effect")):
+        for program, options, words in (
+            (CHAPTER, ["--aperture-diameter=1"], "--aperture-diameter: 01_uniform_sampling leaves out its lens"),
+            (CHAPTER, ["--focus-distance=1"], "--focus-distance has no effect"),
+            (lens, ["--focus-distance=1"], "on a pinhole: give --aperture-diameter"),
+            (lens, ["--focus-distance=1", "--aperture-diameter=0.1"], None),
+            (lens, ["--focus-distance=1", "--view=focus"], None),
+            (CHAPTER, ["--specular"], "--specular has no effect"),
+            (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.hdr"], "--exposure has no effect"),
+            (CHAPTER, ["--exposure=1", "--view=normals"], "--exposure has no effect"),
+            (CHAPTER, ["--exposure=1", "--output=a.exr", "--output=a.jpg"], None),
+            (CHAPTER, ["--exposure=1"], None),  # the default outputs have a PNG
+            (media, ["--background=1,1,1"], None),
+            (media, ["foggy.json", "--background=1,1,1"], "--background has no effect"),
+            (CHAPTER, ["--max-threads-per-pixel=2", "--backend=compute"], None),
+            (CHAPTER, ["--max-threads-per-pixel=2", "--backend=native"], "--max-threads-per-pixel has no effect"),
+        ):
             scene = [] if "foggy.json" in options else ["quad.json"]
             _, _, err = self.run_program(*scene, "--width=4", "--height=4", "--samples=1", *options, program=program)
             self.assertRegex(err, rf"\Anote: [^\n]*{words}[^\n]*\n\Z" if words else r"\A\Z", options)
 
     def test_a_picture_without_light_is_noted(self):
         self.write("dark.json", '{"meshes": []}')
-        for options, words in (([], "note: dark.json: nothing emits light"), (["--background=1,1,1"], None), (["--view=normals"], None)):
+        for options, words in (
+            ([], "note: dark.json: nothing emits light"),
+            (["--background=1,1,1"], None),
+            (["--view=normals"], None),
+        ):
             _, _, err = self.run_program("dark.json", "--width=4", "--height=4", "--samples=1", *options)
             self.assertRegex(err, rf"\A{words}[^\n]*\n\Z" if words else r"\A\Z", options)
 
     def test_paths_from_the_home_folder(self):
-        self.render("quad.json", "--width=4", "--height=4", "--samples=1", "--output=~/home.exr", environment={"HOME": str(self.folder)})
+        self.render(
+            "quad.json", "--width=4", "--height=4", "--samples=1", "--output=~/home.exr", environment={"HOME": str(self.folder)}
+        )
         self.render("--output=~/merged.exr", "home.exr", program=MERGE, environment={"HOME": str(self.folder)})
         self.assertTrue((self.folder / "home.exr").exists() and (self.folder / "merged.exr").exists())
         self.assertFalse((self.folder / "~").exists())
@@ -139,9 +147,17 @@ class WrongArguments(ProgramTest):
                 self.refuse(option, value)
 
     def test_numbers_out_of_range(self):
-        for option, values in {"--target-error": (0, -1), "--time-limit": (0, -1), "--vertical-fov": (0, -10, 180, 400),
-                               "--exposure": (1e9, -1e9), "--save-every": (0, -1), "--width": (0, 16385, 10**30),
-                               "--camera-position": ("1e31,0,0",), "--background": ("1,1,1e31", "1,1,-1"), "--focus-distance": (0, 1e31)}.items():
+        for option, values in {
+            "--target-error": (0, -1),
+            "--time-limit": (0, -1),
+            "--vertical-fov": (0, -10, 180, 400),
+            "--exposure": (1e9, -1e9),
+            "--save-every": (0, -1),
+            "--width": (0, 16385, 10**30),
+            "--camera-position": ("1e31,0,0",),
+            "--background": ("1,1,1e31", "1,1,-1"),
+            "--focus-distance": (0, 1e31),
+        }.items():
             for value in values:
                 self.refuse(option, value, r" from \S+ to \S+")
         for value in ("inf", "infinity"):
@@ -194,11 +210,26 @@ class WrongOutputs(ProgramTest):
         self.write("quad.mtl", QUAD_MTL + "map_Kd map.png\n")
         self.write("quad.json", QUAD_JSON.replace('"radiance": [1, 1, 1]', '"light_probe": "sky.exr"'))
         (self.folder / "link.exr").symlink_to("sky.exr")
-        for option, name in (("--report", "quad.json"), ("--output", "map.png"), ("--output", "./sky.exr"), ("--output", "link.exr")):
+        for option, name in (
+            ("--report", "quad.json"),
+            ("--output", "map.png"),
+            ("--output", "./sky.exr"),
+            ("--output", "link.exr"),
+        ):
             self.refuse(name, re.escape(name), "choose another name", option=option)
         (self.folder / "reference.exr").write_bytes((self.folder / "sky.exr").read_bytes())
-        self.assert_refused(["quad.json", "--width=8", "--height=4", "--samples=4000000000", "--reference=reference.exr",
-                             "--output=reference.exr"], r"reference\.exr", "choose another name")
+        self.assert_refused(
+            [
+                "quad.json",
+                "--width=8",
+                "--height=4",
+                "--samples=4000000000",
+                "--reference=reference.exr",
+                "--output=reference.exr",
+            ],
+            r"reference\.exr",
+            "choose another name",
+        )
 
     def test_one_bad_output_of_two(self):
         self.assert_refused(
@@ -217,10 +248,22 @@ class Devices(ProgramTest):
         if not drivers:
             self.skipTest("Mesa's driver for CPUs is not installed")
         copies = [self.write(f"{i}.json", drivers[0].read_bytes()) for i in range(2)]
-        one, two = ({name: ":".join(map(str, files)) for name in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES")} for files in (copies[:1], copies))
+        one, two = (
+            {name: ":".join(map(str, files)) for name in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES")}
+            for files in (copies[:1], copies)
+        )
         name = re.match(r"0  (llvmpipe \(LLVM .*?(\d+) bits\))", self.render("--list-devices", environment=two))
         for choice in (name[1], "LLVMpipe", name[2], "0"):
-            arguments = ["quad.json", "--headless", "--width=8", "--height=8", "--samples=1", "--backend=compute", "--device", choice]
+            arguments = [
+                "quad.json",
+                "--headless",
+                "--width=8",
+                "--height=8",
+                "--samples=1",
+                "--backend=compute",
+                "--device",
+                choice,
+            ]
             self.assertIn(name[1], self.render(*arguments, environment=one))
             if choice != "0":
                 self.assert_refused(arguments, re.escape(choice), "choose by number, such as --device 0", code=2, environment=two)
@@ -244,9 +287,13 @@ class Devices(ProgramTest):
     def test_a_crash_under_a_limit_of_memory_names_it(self):
         """Mesa crashes where it gets no memory. Here the signal comes from outside."""
         limit = 64 << 30
-        for prepare, code, words in ((lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)), 3, "limit of memory is too low"),
-                                     (None, -signal.SIGSEGV, "")):
-            with self.start("quad.json", "--samples=4000000000", "--backend=compute", "--save-every=0.01", "--output=a.exr", prepare=prepare) as process:
+        for prepare, code, words in (
+            (lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)), 3, "limit of memory is too low"),
+            (None, -signal.SIGSEGV, ""),
+        ):
+            with self.start(
+                "quad.json", "--samples=4000000000", "--backend=compute", "--save-every=0.01", "--output=a.exr", prepare=prepare
+            ) as process:
                 self.wait_for(self.folder / "a.exr", process)
                 process.send_signal(signal.SIGSEGV)
                 err = process.communicate(timeout=300)[1]

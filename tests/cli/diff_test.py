@@ -31,13 +31,19 @@ class DiffTest(unittest.TestCase):
             before = dict(zip(list(numbers)[1:], numbers))
             (Path(folder) / "shaders").mkdir()
             (Path(folder) / "shaders/replaceable.json").write_text('["points.glsl"]', encoding="utf-8")
-            with mock.patch.multiple(show_diff, ROOT=Path(folder).resolve(), CHAPTERS=numbers, BEFORE=before), \
-                    mock.patch.object(includes, "ROOT", Path(folder).resolve()):
-                return {files[1]: show_diff.compare(*map(show_diff.shader_lines, files))[0] for files in show_diff.lesson(len(chapters))}
+            with mock.patch.multiple(show_diff, ROOT=Path(folder).resolve(), CHAPTERS=numbers, BEFORE=before), mock.patch.object(
+                includes, "ROOT", Path(folder).resolve()
+            ):
+                return {
+                    files[1]: show_diff.compare(*map(show_diff.shader_lines, files))[0]
+                    for files in show_diff.lesson(len(chapters))
+                }
 
     def test_nobody_needs_to_read_to_the_end(self):
         """As in ./lab diff all | head."""
-        with subprocess.Popen([ROOT / "lab", "diff", "all"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen(
+            [ROOT / "lab", "diff", "all"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as process:
             process.stdout.close()
             self.assertEqual(process.stderr.read(), "")
 
@@ -53,13 +59,19 @@ class DiffTest(unittest.TestCase):
         """A technique is shown in full. Of an estimator that includes another chapter's, only its own lines are new."""
         estimator = ["vec3 path_trace(Ray ray) {", "    return vec3(0.0);", "}"]
         own = ['#include "points.glsl"', '#include "../01_first/path_trace.glsl"']
-        chapters = {"01_first": {"path_trace.glsl": estimator}, "02_second": {"path_trace.glsl": own, "points.glsl": ["float x;"]}}
+        chapters = {
+            "01_first": {"path_trace.glsl": estimator},
+            "02_second": {"path_trace.glsl": own, "points.glsl": ["float x;"]},
+        }
         shown = self.lesson_of(chapters)
         self.assertEqual(list(shown), ["chapters/02_second/path_trace.glsl", "chapters/02_second/points.glsl"])
         self.assertEqual(self.changed(shown["chapters/02_second/path_trace.glsl"]), [("+", line) for line in own])
         self.assertEqual(shown["chapters/02_second/points.glsl"], [("+", "float x;", None)])
         # A chapter that follows one which only includes is compared with the included text, even if named by its folder alone.
-        chapters["03_third"] = {"path_trace.glsl": own[:1] + ["", *estimator], "points.glsl": ['#include "02_second/points.glsl"']}
+        chapters["03_third"] = {
+            "path_trace.glsl": own[:1] + ["", *estimator],
+            "points.glsl": ['#include "02_second/points.glsl"'],
+        }
         shown = self.lesson_of(chapters)
         self.assertEqual(self.changed(shown["chapters/03_third/path_trace.glsl"]), [("-", own[1]), ("+", "")])
         self.assertEqual(self.changed(shown["chapters/03_third/points.glsl"]), [("+", '#include "02_second/points.glsl"')])
@@ -68,13 +80,19 @@ class DiffTest(unittest.TestCase):
         """However many chapters lie between, as chapter.json says."""
         says = {"chapter.json": ['{"continues": "01_first"}']}
         included = {"path_trace.glsl": ['#include "01_first/path_trace.glsl"']}
-        chapters = {"01_first": {"path_trace.glsl": ['#include "points.glsl"'], "points.glsl": ["float x;"]}, "02_second": says | included,
-                    "03_third": {"chapter.json": ['{"continues": "02_second"}'], "points.glsl": ["float x;", "float y;"]} | included}
+        chapters = {
+            "01_first": {"path_trace.glsl": ['#include "points.glsl"'], "points.glsl": ["float x;"]},
+            "02_second": says | included,
+            "03_third": {"chapter.json": ['{"continues": "02_second"}'], "points.glsl": ["float x;", "float y;"]} | included,
+        }
         self.assertEqual(self.changed(self.lesson_of(chapters)["chapters/03_third/points.glsl"]), [("+", "float y;")])
 
     def test_a_loop_in_a_file_of_its_own_is_compared_as_part_of_the_estimator(self):
         loop = ["vec3 path_trace(Ray ray) {", "    return vec3(1.0);", "}"]
-        chapters = {"01_first": {"path_trace.glsl": loop}, "02_second": {"path_trace.glsl": ['#include "loop.glsl"'], "loop.glsl": loop}}
+        chapters = {
+            "01_first": {"path_trace.glsl": loop},
+            "02_second": {"path_trace.glsl": ['#include "loop.glsl"'], "loop.glsl": loop},
+        }
         (rows,) = self.lesson_of(chapters).values()
         self.assertEqual(self.changed(rows), [("+", '#include "loop.glsl"')])
 

@@ -23,8 +23,15 @@ from project import description
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md")), *sorted(ROOT.glob("chapters/**/README.md"))]
 CHAPTERS = {int(path.name[:2]): path.name for path in ROOT.glob("chapters/[0-9]*")}
 COURSE = [name for name in CHAPTERS.values() if "exercise" in description(name)]
-SECTIONS = ["From the formula to the code", "The decisive lines", "What it gains, and where it does not", "What can go wrong", "How we know",
-            "Exercises", "Summary"]  # of each chapter's page, in this order
+SECTIONS = [
+    "From the formula to the code",
+    "The decisive lines",
+    "What it gains, and where it does not",
+    "What can go wrong",
+    "How we know",
+    "Exercises",
+    "Summary",
+]  # of each chapter's page, in this order
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 SIZE = ("--width", "--height")
 SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
@@ -118,10 +125,16 @@ class DocumentationTest(unittest.TestCase):
         for page in PAGES:
             for name, target in re.findall(r"\[`(\w+)\(\)`\]\(([^)#\s]+)\)", text_of(page)):
                 if defines(text, name):  # or else the file shows a call of one that is not ours
-                    self.assertTrue(defines(text_of(page.parent / target), name), f"{page.relative_to(ROOT)}: {target} only calls {name}()")
+                    self.assertTrue(
+                        defines(text_of(page.parent / target), name), f"{page.relative_to(ROOT)}: {target} only calls {name}()"
+                    )
 
     def test_code_that_is_named_exists(self):
-        text = sources(("common", "shaders", "chapters", "tools", "tests")) + text_of(ROOT / "lab") + text_of(ROOT / "tests/fresh_machine")
+        text = (
+            sources(("common", "shaders", "chapters", "tools", "tests"))
+            + text_of(ROOT / "lab")
+            + text_of(ROOT / "tests/fresh_machine")
+        )
         text += "\n".join(path.stem for path in (ROOT / "assets").rglob("*"))  # scenes and references
         for page in PAGES:
             for code in re.findall(r"`([^`\n]+)`", text_of(page)):
@@ -144,9 +157,17 @@ class DocumentationTest(unittest.TestCase):
         suites = {suite for suite, _ in cited_tests.written_tests()}
         for chapter in COURSE:  # chapters added by others may have different pages
             text = text_of(ROOT / "chapters" / chapter / "README.md")
-            for part in ("\n    ./lab run ", "\n![", "\n<!-- measured: ", "\n<!-- code: ", "Symbols: [table](../../docs/slides.md#symbols)"):
+            for part in (
+                "\n    ./lab run ",
+                "\n![",
+                "\n<!-- measured: ",
+                "\n<!-- code: ",
+                "Symbols: [table](../../docs/slides.md#symbols)",
+            ):
                 self.assertTrue(part in text, f"{chapter}/README.md has no {part.strip()!r}, which pages with an exercise have")
-            self.assertEqual([heading for heading in re.findall(r"^## (.*)$", text, re.MULTILINE) if heading in SECTIONS], SECTIONS, chapter)
+            self.assertEqual(
+                [heading for heading in re.findall(r"^## (.*)$", text, re.MULTILINE) if heading in SECTIONS], SECTIONS, chapter
+            )
             kinds = re.findall(r"^\d+\. \*([\w ]+)\.\*", text, re.MULTILINE)
             self.assertGreaterEqual(len(kinds), 5, chapter)
             self.assertLessEqual({"Fill in", "Derive", "Measure", "Find the bug", "Explore", "Challenge"}, set(kinds), chapter)
@@ -160,15 +181,21 @@ class DocumentationTest(unittest.TestCase):
             exercise = description(chapter)["exercise"]
             _, solution = take_out(text_of(folder / exercise["file"]), exercise)
             open_text = re.sub(r"<details>.*?</details>", "", text_of(folder / "README.md"), flags=re.DOTALL)
-            shown = {line.strip() for block in re.findall(r"```glsl\n(.*?)```", open_text, re.DOTALL) for line in block.splitlines()}
+            shown = {
+                line.strip() for block in re.findall(r"```glsl\n(.*?)```", open_text, re.DOTALL) for line in block.splitlines()
+            }
             self.assertEqual({line.strip() for line in solution.splitlines() if re.search(r"\w", line)} & shown, set(), chapter)
 
     def test_every_exercise_has_a_solution(self):
         for chapter in COURSE:  # for exercise 1 it is the chapter's shader
             exercises = re.findall(r"^(\d+)\. \*([\w ]+)\.\*", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
-            solutions = re.findall(r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"), re.MULTILINE)
+            solutions = re.findall(
+                r"^## (\d+)\. ([\w ]+)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"), re.MULTILINE
+            )
             self.assertEqual(solutions, exercises[1:], chapter)
-            named = re.search(r"[Ee]xercise 1 is [^()]*\(\.\./(\w+\.glsl)\)", text_of(ROOT / "chapters" / chapter / "solutions/README.md"))
+            named = re.search(
+                r"[Ee]xercise 1 is [^()]*\(\.\./(\w+\.glsl)\)", text_of(ROOT / "chapters" / chapter / "solutions/README.md")
+            )
             self.assertEqual(named[1], description(chapter)["exercise"]["file"], chapter)
 
     def test_tables_are_what_the_sources_say(self):
@@ -178,7 +205,11 @@ class DocumentationTest(unittest.TestCase):
 
     def test_the_page_of_scenes_has_every_key_and_keyword(self):
         page = text_of(ROOT / "docs/scenes.md")
-        keys = {key for keys in re.findall(r'\{("\w+"(?:,\s*"\w+")+)\}', text_of(ROOT / "common/scene/scene_file.cpp")) for key in re.findall(r"\w+", keys)}
+        keys = {
+            key
+            for keys in re.findall(r'\{("\w+"(?:,\s*"\w+")+)\}', text_of(ROOT / "common/scene/scene_file.cpp"))
+            for key in re.findall(r"\w+", keys)
+        }
         keywords = set(re.findall(r'^ *\{"(\w+)"', text_of(ROOT / "common/scene/material_keywords.h"), re.MULTILINE))
         for heading, names in (("Keys of a scene file", keys), ("Keywords of a material", keywords)):
             rows = re.search(rf"^## {heading}$.*?^(\|.*?)\n(?:\n|<)", page, re.MULTILINE | re.DOTALL)[1]
@@ -186,7 +217,10 @@ class DocumentationTest(unittest.TestCase):
             self.assertGreater(len(names), 10)
             nested = names & {"axis", "degrees", "position", "target"}  # told beside their objects
             self.assertEqual(first | nested & set(re.findall(r"`(\w+)`", rows)), names, heading)
-        for key, default in re.findall(r"uint32_t (\w+) = (\d+);", re.search(r"struct RenderDefaults .*?};", text_of(ROOT / "common/scene/scene.h"), re.DOTALL)[0]):
+        for key, default in re.findall(
+            r"uint32_t (\w+) = (\d+);",
+            re.search(r"struct RenderDefaults .*?};", text_of(ROOT / "common/scene/scene.h"), re.DOTALL)[0],
+        ):
             self.assertTrue(re.search(rf"(?m)^\| .*`{key}`.* {default} \|$", page), f"the default of {key} is {default}")
 
     def test_every_numerical_trap_has_tests_that_exist(self):
@@ -221,8 +255,14 @@ class DocumentedRendersTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "assets").symlink_to(ROOT / "assets")
             for words in complete:
-                result = subprocess.run(small_render(words, renders[words]), cwd=folder, capture_output=True, text=True, timeout=300,
-                                        env=os.environ | UNOPTIMISED)
+                result = subprocess.run(
+                    small_render(words, renders[words]),
+                    cwd=folder,
+                    capture_output=True,
+                    text=True,
+                    timeout=300,
+                    env=os.environ | UNOPTIMISED,
+                )
                 command = f"{renders[words].relative_to(ROOT)}: ./lab run {' '.join(words)}"
                 self.assertEqual(result.returncode, 0, f"{command}: {result.stderr}")
 

@@ -56,8 +56,10 @@ class Figures_all(ProgramTest):
         self.assertEqual(names, ["random_numbers.png", "sampler_points.png"])
 
     def test_makes_all_pictures_of_the_pages(self):
-        made = "".join(file.read_text(encoding="utf-8") for file in [TOOLS / "docs/figure_plots.py", TOOLS / "docs/figures.py",
-                                                                     *PROJECT.glob("chapters/*/chapter.json")])
+        made = "".join(
+            file.read_text(encoding="utf-8")
+            for file in [TOOLS / "docs/figure_plots.py", TOOLS / "docs/figures.py", *PROJECT.glob("chapters/*/chapter.json")]
+        )
         names = {path.name for path in (PROJECT / "chapters").iterdir()} | {f"bugs_{name}" for name in GALLERY}
         exported = ("results_", "noise.", "equal_time.")  # by the notebook
         pictures = [path for path in (PROJECT / "docs/pictures").iterdir() if not path.name.startswith(exported)]
@@ -65,7 +67,10 @@ class Figures_all(ProgramTest):
             # For a series, the code has the name without the numbers.
             self.assertTrue(picture.stem.rstrip("0123456789") in made or picture.stem in names, picture.name)
         self.assertLess(sum(picture.stat().st_size for picture in pictures), MOST_BYTES)
-        pages = "".join(page.read_text(encoding="utf-8") for page in [*PROJECT.glob("*.md"), *PROJECT.glob("*/*.md"), *PROJECT.glob("*/*/*.md")])
+        pages = "".join(
+            page.read_text(encoding="utf-8")
+            for page in [*PROJECT.glob("*.md"), *PROJECT.glob("*/*.md"), *PROJECT.glob("*/*/*.md")]
+        )
         shown = {name for name in re.findall(r"\]\([^)]*pictures/([^)]*)\)", pages) if not name.startswith(exported)}
         self.assertEqual(sorted(picture.name for picture in pictures), sorted(shown), "made but not shown, or the other way")
 
@@ -76,7 +81,11 @@ class Figures_all(ProgramTest):
                 if "scene" in figure and "size" in figure:
                     scene = read_json(PROJECT / f"assets/scenes/{figure['scene']}.json")
                     of_scene, of_picture = (scene.get("width", 512), scene.get("height", 512)), figure["size"]
-                    self.assertEqual(of_scene[0] * of_picture[1], of_scene[1] * of_picture[0], f"{name}: a scene of {of_scene} in a picture of {of_picture}")
+                    self.assertEqual(
+                        of_scene[0] * of_picture[1],
+                        of_scene[1] * of_picture[0],
+                        f"{name}: a scene of {of_scene} in a picture of {of_picture}",
+                    )
                     shapes.append(of_scene)
         self.assertGreater(len(set(shapes)), 2)
 
@@ -85,7 +94,11 @@ class Figures_all(ProgramTest):
 
     def test_a_failing_render_is_told(self):
         command = COMMAND.replace('"cornell_box"', '"no_such_scene"')
-        result = subprocess.run([sys.executable, "-B", "-c", command, TOOLS, "--output=pictures", "small"], cwd=self.folder,
-                                capture_output=True, text=True)
+        result = subprocess.run(
+            [sys.executable, "-B", "-c", command, TOOLS, "--output=pictures", "small"],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+        )
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"\Aerror: only_0: [^\n]*no_such_scene[^\n]*\n\Z")

@@ -11,16 +11,26 @@ import unittest
 
 from book_test import Site  # first: it finds the others
 import numpy as np
+from book import live
 from image_files import Exr
 from program import BINARIES, ProgramTest
 from project import CHAPTERS, course, scene_of
 from tools_path import PROJECT
 
 FIREFOX, DISPLAY = shutil.which("firefox-esr") or shutil.which("firefox"), shutil.which("xvfb-run")
-SETTINGS = {"webgl.force-enabled": True, "webgl.disabled": False, "browser.shell.checkDefaultBrowser": False, "datareporting.policy.dataSubmissionEnabled": False,
-            "app.update.enabled": False, "browser.aboutwelcome.enabled": False, "network.captive-portal-service.enabled": False}
+SETTINGS = {
+    "webgl.force-enabled": True,
+    "webgl.disabled": False,
+    "browser.shell.checkDefaultBrowser": False,
+    "datareporting.policy.dataSubmissionEnabled": False,
+    "app.update.enabled": False,
+    "browser.aboutwelcome.enabled": False,
+    "network.captive-portal-service.enabled": False,
+}
 PAGE = """<!DOCTYPE html><title>films</title><canvas></canvas>""" + "".join(
-    f'<script src="/live/{name}"></script>' for name in ("sources.js", "preprocessor.js", "layout.js", "glsl.js", "verdict.js", "renderer.js", "films.js"))
+    f'<script src="/live/{name}"></script>'
+    for name in ("sources.js", *live.SCRIPTS[: live.SCRIPTS.index("renderer.js") + 1], "films.js")
+)
 PATIENCE = 600  # seconds for a chapter
 LARGEST_DIFFERENCE = 1e-3  # of the picture's mean
 MOST_DIFFERENT = 50 / 65536  # of the pixels: where rounding decides which way a path goes
@@ -49,16 +59,25 @@ class Firefox_all(Site, ProgramTest):
     def start(self):
         """Firefox with the page; what it sends arrives in the queue."""
         shutil.copy(PROJECT / "tests/browser/films.js", self.site / "live")
-        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), lambda *arguments: Server(*arguments, directory=str(self.site)))
+        server = http.server.ThreadingHTTPServer(
+            ("127.0.0.1", 0), lambda *arguments: Server(*arguments, directory=str(self.site))
+        )
         server.received = queue.Queue()
         threading.Thread(target=server.serve_forever, daemon=True).start()
         self.addCleanup(server.server_close)
         self.addCleanup(server.shutdown)
         profile = self.folder / "profile"
         profile.mkdir()
-        (profile / "user.js").write_text("".join(f'user_pref("{name}", {str(value).lower()});\n' for name, value in SETTINGS.items()), encoding="utf-8")
-        browser = subprocess.Popen([DISPLAY, "-a", FIREFOX, "--no-remote", "--profile", profile, f"http://127.0.0.1:{server.server_port}/"],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, env=os.environ | {"HOME": str(self.folder)})
+        (profile / "user.js").write_text(
+            "".join(f'user_pref("{name}", {str(value).lower()});\n' for name, value in SETTINGS.items()), encoding="utf-8"
+        )
+        browser = subprocess.Popen(
+            [DISPLAY, "-a", FIREFOX, "--no-remote", "--profile", profile, f"http://127.0.0.1:{server.server_port}/"],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+            env=os.environ | {"HOME": str(self.folder)},
+        )
         self.addCleanup(os.killpg, browser.pid, signal.SIGKILL)
         return server.received
 
@@ -70,12 +89,38 @@ class Firefox_all(Site, ProgramTest):
             _, _, chapter, name, size = path.split("/")
             width, height = map(int, size.split("x"))
             file = self.folder / f"{chapter}.exr"
-            subprocess.run(list(map(str, (BINARIES / chapter, scene_of(name), "--width", width, "--height", height, "--samples", 16, "--max-path-length",
-                                          name.rpartition("_")[2], "--backend", "compute", "--quiet", "--headless", "--output", file))), check=True)
+            subprocess.run(
+                list(
+                    map(
+                        str,
+                        (
+                            BINARIES / chapter,
+                            scene_of(name),
+                            "--width",
+                            width,
+                            "--height",
+                            height,
+                            "--samples",
+                            16,
+                            "--max-path-length",
+                            name.rpartition("_")[2],
+                            "--backend",
+                            "compute",
+                            "--quiet",
+                            "--headless",
+                            "--output",
+                            file,
+                        ),
+                    )
+                ),
+                check=True,
+            )
             expected = np.array(Exr(file).pixels()).reshape(3, -1).T
             pixels = np.frombuffer(body, dtype="<f4").reshape(-1, 3)
             different = (np.abs(pixels - expected).max(axis=1) > LARGEST_DIFFERENCE * expected.mean()).sum()
-            print(f"{chapter}: {different} of {len(pixels)} pixels differ, means by {abs(pixels.mean() / expected.mean() - 1):.1g}")
+            print(
+                f"{chapter}: {different} of {len(pixels)} pixels differ, means by {abs(pixels.mean() / expected.mean() - 1):.1g}"
+            )
             with self.subTest(chapter=chapter):
                 self.assertLessEqual(different, MOST_DIFFERENT * len(pixels))
             seen.add(chapter)

@@ -116,18 +116,23 @@ class FirstSteps_all(RenderTest):
         right, broken = (self.runs(step, np.mean, *six_bounces) for step in ("6", "6 broken"))
         self.assert_more(broken, right)
         # The left wall is red.
-        right, broken = (self.runs(step, lambda image: np.divide(*image[WALL].mean(axis=(0, 1))[:2]), *six_bounces)
-                         for step in ("6", "6 broken"))
+        right, broken = (
+            self.runs(step, lambda image: np.divide(*image[WALL].mean(axis=(0, 1))[:2]), *six_bounces)
+            for step in ("6", "6 broken")
+        )
         self.assert_more(right, broken)
 
     def test_6_is_too_bright_below_the_lamp_and_too_dark_at_the_walls(self):
         for where, is_brighter in ((FLOOR, True), (WALL, False)):
-            loop, weighted = (self.runs(step, lambda image: image[where].mean(), "--samples=64", "--max-path-length=1")
-                              for step in ("6", "7"))
+            loop, weighted = (
+                self.runs(step, lambda image: image[where].mean(), "--samples=64", "--max-path-length=1") for step in ("6", "7")
+            )
             self.assert_more(*((loop, weighted) if is_brighter else (weighted, loop)))
 
     def test_6_and_7_agree_in_the_furnace(self):
-        self.assert_same_mean(*(self.runs(step, np.mean, "--samples=16", "--max-path-length=6", scene="furnace") for step in ("6", "7")))
+        self.assert_same_mean(
+            *(self.runs(step, np.mean, "--samples=16", "--max-path-length=6", scene="furnace") for step in ("6", "7"))
+        )
 
     def test_7_is_chapter_1(self):
         for scene in WITH_AND_WITHOUT_SKY:
@@ -136,7 +141,9 @@ class FirstSteps_all(RenderTest):
 
     def test_7_without_the_sine_reflects_twice_an_even_sky(self):
         for step, reflected in (("7", 0.5), ("7 broken", 1.0)):
-            self.assert_same_mean(self.runs(step, lambda image: image[MIDDLE].mean(), "--samples=16", scene="quad.json"), reflected)
+            self.assert_same_mean(
+                self.runs(step, lambda image: image[MIDDLE].mean(), "--samples=16", scene="quad.json"), reflected
+            )
 
     def test_7_without_the_sine_gains_most_below_the_lamp(self):
         def floor_over_wall(image):
@@ -169,12 +176,16 @@ class FirstStepsPictures_all(ProgramTest):
         """The tiles of a picture, as figure_plots.sheet() arranges them."""
         with Image.open(picture) as image:
             size = image.height - LABEL - GAP
-            return [np.array(image.crop((x, LABEL, x + size, LABEL + size))) / 255
-                    for x in range(GAP, GAP + count * (size + GAP), size + GAP)]
+            return [
+                np.array(image.crop((x, LABEL, x + size, LABEL + size))) / 255
+                for x in range(GAP, GAP + count * (size + GAP), size + GAP)
+            ]
 
     def difference(self, first, second, squares):
         """Mean difference of the means of squares x squares parts of two pictures."""
-        first, second = (image.reshape(squares, len(image) // squares, squares, -1, 3).mean(axis=(1, 3)) for image in (first, second))
+        first, second = (
+            image.reshape(squares, len(image) // squares, squares, -1, 3).mean(axis=(1, 3)) for image in (first, second)
+        )
         return np.abs(first - second).mean()
 
     def test_are_what_the_steps_render(self):

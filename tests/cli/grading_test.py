@@ -44,8 +44,13 @@ class GradingTest(ProgramTest):
         chapter = int(re.search(r"^chapter=(\d+)", (GRADING / "gradescope/run_autograder").read_text(), re.MULTILINE)[1])
         shader = (PROJECT / "chapters" / CHAPTERS[chapter] / SUBMITTED).read_text(encoding="utf-8")
         untouched = take_out(shader, exercise_of(chapter))[0]
-        for text, points in ((shader, 10), (shader.replace("/ (distance * distance)", "/ distance"), 0), ("nothing", 0), (untouched, 0),
-                             (untouched.replace("TODO", ""), 0)):
+        for text, points in (
+            (shader, 10),
+            (shader.replace("/ (distance * distance)", "/ distance"), 0),
+            ("nothing", 0),
+            (untouched, 0),
+            (untouched.replace("TODO", ""), 0),
+        ):
             result = self.autograde(text)
             self.assertAlmostEqual(result["score"], points, delta=0.001)
             self.assertAlmostEqual(sum(test["score"] for test in result["tests"]), points, delta=0.01)

@@ -12,9 +12,14 @@ from pathlib import Path
 from program import BINARIES, PROJECT, TOOLS, ProgramTest, copy_project
 
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
-EXERCISES = {name: json.loads((PROJECT / "chapters" / name / "chapter.json").read_text(encoding="utf-8"))["exercise"] for name in CHAPTERS}
-MISTAKES = {mistake["name"] for name in CHAPTERS
-            for mistake in json.loads((PROJECT / "chapters" / name / "mistakes.json").read_text(encoding="utf-8"))}
+EXERCISES = {
+    name: json.loads((PROJECT / "chapters" / name / "chapter.json").read_text(encoding="utf-8"))["exercise"] for name in CHAPTERS
+}
+MISTAKES = {
+    mistake["name"]
+    for name in CHAPTERS
+    for mistake in json.loads((PROJECT / "chapters" / name / "mistakes.json").read_text(encoding="utf-8"))
+}
 # What other pages could reveal of chapter 3's solution, and what is for teachers only.
 QUOTATION = """
 <!-- code: chapters/03_next_event_estimation/path_trace.glsl | V: a shadow ray | * y.emission; -->
@@ -36,13 +41,20 @@ float later = 1.0;
 <!-- end of code -->
 """
 TEACHERS = ["mistakes.json", "solutions"]  # in a chapter's folder
-FOR_TEACHERS = ["chapters/03_next_event_estimation/solutions/03.md", "docs/bugs.md", "docs/teaching.md", "tools/course/answers.py", "tools/docs/answers.json"]
+FOR_TEACHERS = [
+    "chapters/03_next_event_estimation/solutions/03.md",
+    "docs/bugs.md",
+    "docs/teaching.md",
+    "tools/course/answers.py",
+    "tools/docs/answers.json",
+]
 
 
 def handout(folder, *arguments, tools=TOOLS):
     command = [sys.executable, "-B", tools, "handout", *arguments]
-    return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True,
-                          env=os.environ | {"LAB_BINARIES": str(BINARIES)})
+    return subprocess.run(
+        list(map(str, command)), cwd=folder, capture_output=True, text=True, env=os.environ | {"LAB_BINARIES": str(BINARIES)}
+    )
 
 
 class EveryHandout_all(ProgramTest):
@@ -86,7 +98,9 @@ class HandoutTest(ProgramTest):
             self.assertFalse((tree / "tests").exists() or (tree / ".git").exists())
             self.assertIn("TODO", (tree / "chapters" / name / exercise["file"]).read_text(encoding="utf-8"))
             self.assertEqual([path for path in tree.glob("chapters/*/*") if path.name in TEACHERS], [])
-            for path in (path for name in ("chapters", "shaders", "tools", "docs", "notebook") for path in (tree / name).rglob("*")):
+            for path in (
+                path for name in ("chapters", "shaders", "tools", "docs", "notebook") for path in (tree / name).rglob("*")
+            ):
                 if path.suffix in (".glsl", ".md", ".py", ".json"):
                     text = path.read_text(encoding="utf-8")
                     self.assertNotIn(exercise["last"], text, path)
@@ -129,7 +143,11 @@ class HandoutTest(ProgramTest):
             code, out, err = self.run_program("-B", project / "tools", *words, program=sys.executable)
             self.assertEqual((code, err), (0, ""), words)
             self.assertTrue("// Prüfen" in out or words != ["diff", 3])
-        self.assertTrue((self.folder / "lab/chapters/03_next_event_estimation/direct_light.glsl").read_text(encoding="utf-8").endswith("// Prüfen\n"))
+        self.assertTrue(
+            (self.folder / "lab/chapters/03_next_event_estimation/direct_light.glsl")
+            .read_text(encoding="utf-8")
+            .endswith("// Prüfen\n")
+        )
 
     def test_solutions_and_bugs_stay_out_also_where_pages_quote_them(self):
         project = self.copied_project()
@@ -141,9 +159,15 @@ class HandoutTest(ProgramTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         tree = self.folder / "lab"
         self.assertEqual([name for name in FOR_TEACHERS if (tree / name).exists()], [])
-        texts = {path.relative_to(tree): path.read_bytes() for path in tree.rglob("*") if path.is_file() and path.parts[0] != "assets"}
+        texts = {
+            path.relative_to(tree): path.read_bytes() for path in tree.rglob("*") if path.is_file() and path.parts[0] != "assets"
+        }
         self.assertEqual([path for path, text in texts.items() if text == b"planted"], [])
-        self.assertTrue((tree / page.relative_to(project)).read_text(encoding="utf-8").endswith("""
+        self.assertTrue(
+            (tree / page.relative_to(project))
+            .read_text(encoding="utf-8")
+            .endswith(
+                """
 ```glsl
 // TODO
 ```
@@ -152,29 +176,53 @@ The term is TODO. See the model answer.
 Another is code of chapter 7.
 
 (code of chapter 7)
-"""))
+"""
+            )
+        )
 
     def test_no_link_leads_nowhere(self):
         tree = self.tree(3)
-        links = [(page, link) for page in tree.rglob("*.md")
-                 for link in re.findall(r"\]\(([^()\s#]+)[^()\s]*\)", page.read_text(encoding="utf-8")) if "://" not in link]
+        links = [
+            (page, link)
+            for page in tree.rglob("*.md")
+            for link in re.findall(r"\]\(([^()\s#]+)[^()\s]*\)", page.read_text(encoding="utf-8"))
+            if "://" not in link
+        ]
         self.assertGreater(len(links), 50)
         self.assertEqual([(page, link) for page, link in links if not (page.parent / link).exists()], [])
 
     def test_shaders_include_nothing_that_stays_out(self):
         tree = self.tree(3)
-        shaders = [file for folder in ("shaders", "tools", "chapters") for file in (tree / folder).rglob("*")
-                   if file.suffix in (".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h")]
-        includes = [(file, name) for file in shaders
-                    for name in re.findall(r'^#include "(.*)"', file.read_text(encoding="utf-8"), re.MULTILINE)]
+        shaders = [
+            file
+            for folder in ("shaders", "tools", "chapters")
+            for file in (tree / folder).rglob("*")
+            if file.suffix in (".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".h")
+        ]
+        includes = [
+            (file, name)
+            for file in shaders
+            for name in re.findall(r'^#include "(.*)"', file.read_text(encoding="utf-8"), re.MULTILINE)
+        ]
         self.assertGreater(len(includes), 50)
         given = {"path_trace.glsl", "camera.glsl", "observed.glsl", "observed_sample_loop.glsl"}  # supplied by the programs
-        self.assertEqual([(file, name) for file, name in includes if name not in given and
-                          not any((folder / name).exists() for folder in (file.parent, tree / "shaders", tree / "chapters", tree))], [])
+        self.assertEqual(
+            [
+                (file, name)
+                for file, name in includes
+                if name not in given
+                and not any((folder / name).exists() for folder in (file.parent, tree / "shaders", tree / "chapters", tree))
+            ],
+            [],
+        )
 
     def test_pages_speak_of_what_is_there(self):
         for page in self.tree(len(CHAPTERS)).rglob("*.md"):
-            self.assertNotRegex(page.read_text(encoding="utf-8"), r"lab\s+(test|figures|handout|bug)\b|all\s+tests\s+named|NUMBER|FOLDER|SHADER", page)
+            self.assertNotRegex(
+                page.read_text(encoding="utf-8"),
+                r"lab\s+(test|figures|handout|bug)\b|all\s+tests\s+named|NUMBER|FOLDER|SHADER",
+                page,
+            )
 
     def test_its_pages_give_nothing_away(self):
         if not shutil.which("mkdocs"):

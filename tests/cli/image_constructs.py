@@ -20,7 +20,7 @@ def packed(values, bits):
     """Rows of numbers of 1, 2, 4, 8 or 16 bits (big-endian) as rows of bytes."""
     if bits == 16:
         return [row.astype(">u2").tobytes() for row in values]
-    return [np.packbits(np.unpackbits(row.astype(np.uint8)[:, None], axis=1)[:, 8 - bits:].ravel()).tobytes() for row in values]
+    return [np.packbits(np.unpackbits(row.astype(np.uint8)[:, None], axis=1)[:, 8 - bits :].ravel()).tobytes() for row in values]
 
 
 def padded(row, multiple):
@@ -78,12 +78,19 @@ def png(values, kind, bits, interlaced, further=b"", pieces=1):
     """values: [row, column, channel]."""
     height, width, channels = values.shape
     parts = [values[y::down, x::right] for x, y, right, down in ADAM7] if interlaced else [values]
-    rows = b"".join(filtered(packed(part.reshape(part.shape[0], -1), bits), max(1, channels * bits // 8)) for part in parts if part.size)
+    rows = b"".join(
+        filtered(packed(part.reshape(part.shape[0], -1), bits), max(1, channels * bits // 8)) for part in parts if part.size
+    )
     stream = zlib.compress(rows)
     cuts = [len(stream) * i // pieces for i in range(pieces + 1)]
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, kind, 0, 0, interlaced)) +
-            chunk(b"tEXt", b"Title\0x") + further + b"".join(chunk(b"IDAT", stream[a:b]) for a, b in itertools.pairwise(cuts)) +
-            chunk(b"IEND", b""))
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, kind, 0, 0, interlaced))
+        + chunk(b"tEXt", b"Title\0x")
+        + further
+        + b"".join(chunk(b"IDAT", stream[a:b]) for a, b in itertools.pairwise(cuts))
+        + chunk(b"IEND", b"")
+    )
 
 
 def png_files():
@@ -95,7 +102,9 @@ def png_files():
                 for ending, palette, largest in palettes(1 << bits):
                     values = RANDOM.integers(0, largest, (height, width, 1), np.uint16)
                     further = chunk(b"PLTE", palette.tobytes()) + chunk(b"tRNS", b"\x80")
-                    yield f"{ending}_{name}", png(values, kind, bits, interlaced, further), through_palette(values[:, :, 0], palette)
+                    yield f"{ending}_{name}", png(values, kind, bits, interlaced, further), through_palette(
+                        values[:, :, 0], palette
+                    )
             else:
                 values = RANDOM.integers(0, 1 << bits, (height, width, PNG_CHANNELS[kind]), np.uint16)
                 numbers = values >> 8 if bits == 16 else values
@@ -115,7 +124,7 @@ def bmp_header(size, width, height, bits, compression=0, colours=0, masks=(0, 0,
     if size == 12:
         return struct.pack("<HHHH", width, height, 1, bits)
     text = struct.pack("<iiHHIIiiII", width, height, 1, bits, compression, 0, 0, 0, colours, 0) + struct.pack("<4I", *masks)
-    return (text + bytes(124))[:size - 4]
+    return (text + bytes(124))[: size - 4]
 
 
 def bmp_rows(rows, height):
@@ -140,10 +149,17 @@ def bmp_files():
         colours = picture(width, 3)
         rows = bmp_rows([row[:, ::-1].tobytes() for row in colours], sign)
         yield f"bmp_24_{size}_{width}_{sign}.bmp", bmp(bmp_header(size, width, 3 * sign, 24), b"", rows), colours
-    masks = {(16, "555"): (0x7C00, 0x3E0, 0x1F, 0), (16, "565"): (0xF800, 0x7E0, 0x1F, 0), (16, "4444"): (0xF00, 0xF0, 0xF, 0xF000),
-             (16, "1555"): (0x7C00, 0x3E0, 0x1F, 0x8000), (32, "xrgb"): (0xFF0000, 0xFF00, 0xFF, 0),
-             (32, "rgba"): (0xFF, 0xFF00, 0xFF0000, 0xFF000000), (32, "rgbx"): (0xFF000000, 0xFF0000, 0xFF00, 0),
-             (32, "argb"): (0xFF0000, 0xFF00, 0xFF, 0xFF000000), (32, "small"): (0x7F00000, 0x1F000, 0x3, 0)}
+    masks = {
+        (16, "555"): (0x7C00, 0x3E0, 0x1F, 0),
+        (16, "565"): (0xF800, 0x7E0, 0x1F, 0),
+        (16, "4444"): (0xF00, 0xF0, 0xF, 0xF000),
+        (16, "1555"): (0x7C00, 0x3E0, 0x1F, 0x8000),
+        (32, "xrgb"): (0xFF0000, 0xFF00, 0xFF, 0),
+        (32, "rgba"): (0xFF, 0xFF00, 0xFF0000, 0xFF000000),
+        (32, "rgbx"): (0xFF000000, 0xFF0000, 0xFF00, 0),
+        (32, "argb"): (0xFF0000, 0xFF00, 0xFF, 0xFF000000),
+        (32, "small"): (0x7F00000, 0x1F000, 0x3, 0),
+    }
     for size, (bits, name) in itertools.product((40, 52, 56, 108, 124), masks):
         four = masks[bits, name]
         if four[3] and size < 56:
@@ -152,7 +168,9 @@ def bmp_files():
         rows = bmp_rows([row.astype("<u2" if bits == 16 else "<u4").tobytes() for row in values], 1)
         table = struct.pack("<3I", *four[:3]) if size == 40 else b""
         channels = [((values & mask) // (mask & -mask), mask // (mask & -mask)) for mask in four[:3]]
-        colours = np.stack([(part.astype(np.int64) * 255 + largest // 2) // largest for part, largest in channels], axis=2).astype(np.uint8)
+        colours = np.stack(
+            [(part.astype(np.int64) * 255 + largest // 2) // largest for part, largest in channels], axis=2
+        ).astype(np.uint8)
         yield f"bmp_masks_{name}_{size}.bmp", bmp(bmp_header(size, 5, 3, bits, 3, 0, four), table, rows), colours
         if name in ("555", "xrgb"):  # the masks that hold if none are given
             yield f"bmp_plain_{name}_{size}.bmp", bmp(bmp_header(size, 5, 3, bits), b"", rows), colours
@@ -171,7 +189,7 @@ def run_lengths(pixels):
             i += run
         else:
             count = min(5, len(pixels) - i)
-            result += bytes([count - 1]) + b"".join(pixels[i:i + count])
+            result += bytes([count - 1]) + b"".join(pixels[i : i + count])
             i += count
     return result
 
@@ -183,8 +201,12 @@ def tga(kind, values, pixel, bits, descriptor, palette=b"", start=0, length=0, p
     placed = placed[:, ::-1] if descriptor & 0x10 else placed
     pixels = [pixel(value) for row in placed for value in row]
     contents = run_lengths(pixels) if kind & 8 else b"".join(pixels)
-    return struct.pack("<BBBHHBHHHHBB", 3, bool(length), kind, start, length, palette_bits, 0, 0, width, height, bits,
-                       descriptor) + b"id!" + palette + contents
+    return (
+        struct.pack("<BBBHHBHHHHBB", 3, bool(length), kind, start, length, palette_bits, 0, 0, width, height, bits, descriptor)
+        + b"id!"
+        + palette
+        + contents
+    )
 
 
 def tga_files():
@@ -199,11 +221,17 @@ def tga_files():
             file = tga(2 | packets, values, lambda v: bytes(v[::-1]) + b"\x55", 32, corner | alpha)
             yield f"{name}_32_{alpha}.tga", file, values
         fifths = RANDOM.integers(0, 32, (6, 9, 3), np.uint16)
-        yield (f"{name}_16.tga", tga(2 | packets, fifths, lambda v: number(2)(v[0] << 10 | v[1] << 5 | v[2]), 16, corner),
-               (fifths * 255 // 31).astype(np.uint8))
+        yield (
+            f"{name}_16.tga",
+            tga(2 | packets, fifths, lambda v: number(2)(v[0] << 10 | v[1] << 5 | v[2]), 16, corner),
+            (fifths * 255 // 31).astype(np.uint8),
+        )
         yield f"{name}_grey.tga", tga(3 | packets, values[:, :, 0], number(1), 8, corner), grey(values[:, :, 0], 255)
-        yield (f"{name}_grey_alpha.tga", tga(3 | packets, values[:, :, 0], lambda v: bytes([v, 99]), 16, corner | 8),
-               grey(values[:, :, 0], 255))
+        yield (
+            f"{name}_grey_alpha.tga",
+            tga(3 | packets, values[:, :, 0], lambda v: bytes([v, 99]), 16, corner | 8),
+            grey(values[:, :, 0], 255),
+        )
         kinds = itertools.product((15, 16, 24, 32), (0, 5), (1, 2), palettes(40))
         for palette_bits, start, index_size, (ending, colours, largest) in kinds:
             indices = RANDOM.integers(start, start + largest, (6, 9))
@@ -231,8 +259,9 @@ def jpg_files():
         if name == "noise" and subsampling > 0:  # stb_image interpolates the colours at the right border otherwise
             continue
         stream = BytesIO()
-        Image.fromarray(values).convert(mode).save(stream, "JPEG", quality=90, subsampling=subsampling, progressive=progressive,
-                                                   optimize=progressive)
+        Image.fromarray(values).convert(mode).save(
+            stream, "JPEG", quality=90, subsampling=subsampling, progressive=progressive, optimize=progressive
+        )
         file = stream.getvalue()
         yield f"jpg_{name}_{mode}_{subsampling}_{progressive}.jpg", file, np.array(Image.open(BytesIO(file)).convert("RGB"))
 
@@ -247,8 +276,9 @@ def hdr_rows(rgbe, runs):
             for channel in row.T:
                 for value, group in itertools.groupby(channel.tolist()):
                     count = len(list(group))
-                    result += bytes([255, value]) * (count // 127) + (bytes([128 + count % 127, value]) if count % 127 > 1 else
-                                                                      bytes([1, value]) * (count % 127))
+                    result += bytes([255, value]) * (count // 127) + (
+                        bytes([128 + count % 127, value]) if count % 127 > 1 else bytes([1, value]) * (count % 127)
+                    )
         else:
             for pixel, group in itertools.groupby(row.tolist()):
                 repeats = len(list(group)) - 1
@@ -263,8 +293,12 @@ def hdr_rows(rgbe, runs):
 
 
 def hdr_files():
-    headers = {"plain": ("", 1), "exposure": ("EXPOSURE=4\nEXPOSURE=0.5\n", 2), "colour": ("COLORCORR=1 2 4\n", np.array([1, 2, 4])),
-               "windows": ("EXPOSURE= 2\n# a comment\nVIEW=-vtv\n", 2)}
+    headers = {
+        "plain": ("", 1),
+        "exposure": ("EXPOSURE=4\nEXPOSURE=0.5\n", 2),
+        "colour": ("COLORCORR=1 2 4\n", np.array([1, 2, 4])),
+        "windows": ("EXPOSURE= 2\n# a comment\nVIEW=-vtv\n", 2),
+    }
     for (name, (header, factor)), runs, width in itertools.product(headers.items(), ("none", "old", "new"), (1, 7, 8, 120)):
         if runs == "new" and width < 8:
             continue

@@ -63,6 +63,7 @@ class LabBuildTest(ProgramTest):
 
     def test_others_run_what_they_may_not_build(self):
         """As in a computer room, whose checkout belongs to somebody else."""
+
         def become_somebody_else():
             if os.geteuid() == 0:
                 os.setgroups([])
@@ -80,8 +81,12 @@ class LabBuildTest(ProgramTest):
         programs.chmod(0o755)
         (programs / "01_first").unlink()
         programs.chmod(0o555)
-        self.assert_refused(["run", 1], "build cannot be written, and 01_first is missing there", program=self.tree / "lab",
-                            prepare=become_somebody_else)
+        self.assert_refused(
+            ["run", 1],
+            "build cannot be written, and 01_first is missing there",
+            program=self.tree / "lab",
+            prepare=become_somebody_else,
+        )
 
     def test_nobody_waits_for_a_program_that_runs(self):
         self.write("lab/01_first", "#!/bin/sh\necho first\nsleep 60\n").chmod(0o755)

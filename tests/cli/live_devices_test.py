@@ -20,7 +20,9 @@ WRITES_AT_MOST = """(() => {
 class LiveDevicesTest(LivePages, unittest.TestCase):
     def lose(self, losses=0, restores=True):
         """Takes the GPU away, as if that had happened so many times without a picture between."""
-        self.frame(f"(frame.picture.losses = {losses}, (window.loss ??= frame.picture.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())")
+        self.frame(
+            f"(frame.picture.losses = {losses}, (window.loss ??= frame.picture.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())"
+        )
         self.wait("frame.picture.renderer.gl.isContextLost() && !frame.picture.renderings.length", "the loss")
         self.frame("(frame.film = null, 0)")
         if restores:
@@ -79,8 +81,12 @@ class LiveDevicesTest(LivePages, unittest.TestCase):
         """Nor does the next one in the same page, once the reader has mended the first."""
         right = "vec3 throughput = vec3(1.0);"
         self.start(3)
-        for loop in ("while (true) { radiance.r += 0.0; }", "for (;;) radiance.r += 0.0;", "do { radiance.r += 0.0; } while (true);",
-                     "if (seed.x % 4096u == 0u) while (true) { radiance.r += 0.0; }"):
+        for loop in (
+            "while (true) { radiance.r += 0.0; }",
+            "for (;;) radiance.r += 0.0;",
+            "do { radiance.r += 0.0; } while (true);",
+            "if (seed.x % 4096u == 0u) while (true) { radiance.r += 0.0; }",
+        ):
             self.edit(right, f"{right} {loop}")
             self.assertRegex(self.error(), r"path_trace\.glsl:\d+: this loop does not end")
             self.assertFalse(self.frame("frame.picture.renderer.gl.isContextLost()"))

@@ -27,18 +27,51 @@ class LiveFactsTest(unittest.TestCase):
             factors = random.choice(FACTORS, count) if random.integers(2) else [random.choice(FACTORS)] * count
             errors = random.choice([1e-3, 0.02], count)
             # Off by a few errors, so that the limits matter.
-            sights = [Sight(right.mean * factor * (1 + 2 * error * random.standard_normal()), right.mean * factor * error, 0, 0, 1, int(random.integers(20) == 0))
-                      for right, factor, error in zip(expected, factors, errors)]
+            sights = [
+                Sight(
+                    right.mean * factor * (1 + 2 * error * random.standard_normal()),
+                    right.mean * factor * error,
+                    0,
+                    0,
+                    1,
+                    int(random.integers(20) == 0),
+                )
+                for right, factor, error in zip(expected, factors, errors)
+            ]
             cases.append((Experiment("name", "light", "the place", points), expected, sights))
         images = random.gamma(2, size=(3, SIZE, SIZE, 3))
         report = {"rows": [{"rays": 1}], "invalid_samples": 2}
         channels = [None, 0, 2]
-        task = {"rules": {name: getattr(facts, name) for name in RULES},
-                "experiments": [{"subject": e.subject, "varies": e.varies, "points": [{"at": p.at, "mean": s.mean, "error": s.error} for p, s in zip(e.points, right)],
-                                 "sights": [{"mean": s.mean, "error": s.error, "invalid": s.invalid} for s in now]} for e, right, now in cases],
-                "films": [{"width": SIZE, "height": SIZE, "samples": SAMPLES, "invalid": 2, "channel": channel, "sums": (SAMPLES * image).ravel().tolist()}
-                          for image, channel in zip(images, channels)]}
-        output = subprocess.run([NODE, PROJECT / "tests/browser/facts.js", TOOLS / "book/live"], input=json.dumps(task), capture_output=True, text=True, check=True)
+        task = {
+            "rules": {name: getattr(facts, name) for name in RULES},
+            "experiments": [
+                {
+                    "subject": e.subject,
+                    "varies": e.varies,
+                    "points": [{"at": p.at, "mean": s.mean, "error": s.error} for p, s in zip(e.points, right)],
+                    "sights": [{"mean": s.mean, "error": s.error, "invalid": s.invalid} for s in now],
+                }
+                for e, right, now in cases
+            ],
+            "films": [
+                {
+                    "width": SIZE,
+                    "height": SIZE,
+                    "samples": SAMPLES,
+                    "invalid": 2,
+                    "channel": channel,
+                    "sums": (SAMPLES * image).ravel().tolist(),
+                }
+                for image, channel in zip(images, channels)
+            ],
+        }
+        output = subprocess.run(
+            [NODE, PROJECT / "tests/browser/facts.js", TOOLS / "book/live"],
+            input=json.dumps(task),
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         found = json.loads(output.stdout)
         for (experiment, right, now), other in zip(cases, found["facts"]):
             fact = facts.fact(experiment, now, right)
@@ -46,6 +79,12 @@ class LiveFactsTest(unittest.TestCase):
         self.assertGreater(len({fact["sentence"] for fact in found["facts"]}), 100)
         for image, channel, other in zip(images, channels, found["sights"]):
             sight = look(image, report, SAMPLES, channel)
-            self.assertTrue(np.allclose([other["mean"], other["error"], other["invalid"]], [sight.mean, sight.error, sight.invalid], rtol=1e-9))
+            self.assertTrue(
+                np.allclose(
+                    [other["mean"], other["error"], other["invalid"]], [sight.mean, sight.error, sight.invalid], rtol=1e-9
+                )
+            )
         sight, other = together([look(image, report, SAMPLES) for image in images]), found["together"]
-        self.assertTrue(np.allclose([other["mean"], other["error"], other["invalid"]], [sight.mean, sight.error, sight.invalid], rtol=1e-9))
+        self.assertTrue(
+            np.allclose([other["mean"], other["error"], other["invalid"]], [sight.mean, sight.error, sight.invalid], rtol=1e-9)
+        )

@@ -38,13 +38,19 @@ class LivePages(Site):
         """Waits until the expression about `frame` is true."""
         end = time.monotonic() + PATIENCE
         while not self.frame(condition):
-            self.assertLess(time.monotonic(), end, f"{what}: {self.frame('frame.verdict?.textContent')} {self.frame('frame.editor?.error.textContent')}")
+            self.assertLess(
+                time.monotonic(),
+                end,
+                f"{what}: {self.frame('frame.verdict?.textContent')} {self.frame('frame.editor?.error.textContent')}",
+            )
             time.sleep(0.1)
 
     def start(self, chapter, fragment="", before=""):
         self.browser.visit("about:blank")
         self.browser.visit((self.site / f"chapters/{CHAPTERS[chapter]}/index.html").as_uri() + fragment)
-        self.browser.evaluate(f"{SMALL}; {before}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()")
+        self.browser.evaluate(
+            f"{SMALL}; {before}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()"
+        )
         self.wait("frame.editor && frame.verdict.textContent !== 'starting …'" if not before else "true", "start")
 
     def click(self, name):
@@ -52,11 +58,13 @@ class LivePages(Site):
 
     def edit(self, old, new):
         """Edits the first file with that text as a reader does."""
-        self.frame(f"""(() => {{ const {{ editor }} = frame;
+        self.frame(
+            f"""(() => {{ const {{ editor }} = frame;
             editor.open(editor.files.find(file => editor.texts[file].includes({json.dumps(old)})));
             const {{ field }} = editor;
             field.value = field.value.replace({json.dumps(old)}, {json.dumps(new)});
-            field.dispatchEvent(new Event("input")); frame.picture.stop(); frame.film = frame.latest = null; }})()""")
+            field.dispatchEvent(new Event("input")); frame.picture.stop(); frame.film = frame.latest = null; }})()"""
+        )
 
     def error(self):
         self.wait("frame.editor.error.textContent", "an error")
@@ -91,10 +99,14 @@ class LivePagesTest(LivePages, unittest.TestCase):
 
     def test_errors_are_at_the_readers_line(self):
         text = (PROJECT / ESTIMATOR).read_text(encoding="utf-8")
-        line = 1 + text[:text.index("vec3 throughput")].count("\n")
+        line = 1 + text[: text.index("vec3 throughput")].count("\n")
         self.start(3)
-        for wrong, message in (("vec3 throughput = vec3(1.0)", "syntax error"), ("vec3 throughput = 1;", "cannot convert|constructor|="),
-                               ("vec3 throughput = vec3(ω);", "ASCII"), ('#include "missing.glsl"', "cannot find the include file")):
+        for wrong, message in (
+            ("vec3 throughput = vec3(1.0)", "syntax error"),
+            ("vec3 throughput = 1;", "cannot convert|constructor|="),
+            ("vec3 throughput = vec3(ω);", "ASCII"),
+            ('#include "missing.glsl"', "cannot find the include file"),
+        ):
             self.edit("vec3 throughput = vec3(1.0);", wrong)
             error = self.error()
             shift = 1 if message == "syntax error" else 0  # the compiler notices in the next line
@@ -106,13 +118,22 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.start(3)
         self.assertTrue(self.frame("document.activeElement === frame.controls.scene"))
         self.frame("(frame.editor.tabs.lastChild.focus(), frame.editor.tabs.lastChild.click())")
-        self.assertTrue(self.frame("document.activeElement === frame.editor.tabs.lastChild && document.activeElement.getAttribute('aria-selected') === 'true'"))
+        self.assertTrue(
+            self.frame(
+                "document.activeElement === frame.editor.tabs.lastChild && document.activeElement.getAttribute('aria-selected') === 'true'"
+            )
+        )
 
     def test_the_gallery_starts_from_bugs(self):
         self.browser.visit("about:blank")
         self.browser.visit((self.site / "docs/bugs.html").as_uri())
-        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.live-start').length"), (PROJECT / "docs/bugs.md").read_text(encoding="utf-8").count("<!-- live: "))
-        self.browser.evaluate(f"{SMALL}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()")
+        self.assertEqual(
+            self.browser.evaluate("document.querySelectorAll('.live-start').length"),
+            (PROJECT / "docs/bugs.md").read_text(encoding="utf-8").count("<!-- live: "),
+        )
+        self.browser.evaluate(
+            f"{SMALL}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()"
+        )
         self.wait("frame.latest?.verdict", "a verdict")
         self.assertRegex(self.frame("frame.latest.text"), "^biased: ")
         frames = "[...document.querySelectorAll('.live')].map(root => root.frame)"
@@ -130,7 +151,10 @@ class LivePagesTest(LivePages, unittest.TestCase):
     def test_the_chapter_before_has_the_same_time(self):
         self.start(3)
         self.frame("(frame.controls.compared.checked = true, frame.restart(), 0)")
-        self.wait("/^After the same time, left chapter 3: .*; right chapter 2: /.test(frame.picture.caption.textContent)", "both chapters")
+        self.wait(
+            "/^After the same time, left chapter 3: .*; right chapter 2: /.test(frame.picture.caption.textContent)",
+            "both chapters",
+        )
         self.frame("frame.picture.line.focus()")
         times = self.frame("frame.picture.renderings.map(({ rendering }) => rendering.busy)")
         self.assertLess(max(times), 1.5 * min(times))
@@ -160,11 +184,17 @@ class LivePagesTest(LivePages, unittest.TestCase):
     def test_pages_are_small(self):
         for chapter in course():
             folder = self.site / "live"
-            about = json.loads(re.search(r"^live\.chapters = (.*);$", (folder / "sources.js").read_text(encoding="utf-8"), re.MULTILINE)[1])[CHAPTERS[chapter]]
+            about = json.loads(
+                re.search(r"^live\.chapters = (.*);$", (folder / "sources.js").read_text(encoding="utf-8"), re.MULTILINE)[1]
+            )[CHAPTERS[chapter]]
             scripts = sum(file.stat().st_size for file in folder.glob("*.*"))
             for picture in about["pictures"]:
                 size = scripts + sum((folder / "data" / f"{picture[key]}.js").stat().st_size for key in ("scene", "reference"))
-                self.assertLess(size, 600_000 if picture["name"].startswith("cornell_box") else 2_500_000, f"chapter {chapter}, {picture['name']}")
+                self.assertLess(
+                    size,
+                    600_000 if picture["name"].startswith("cornell_box") else 2_500_000,
+                    f"chapter {chapter}, {picture['name']}",
+                )
 
     def test_every_chapter_has_a_frame(self):
         for chapter in course():
@@ -187,7 +217,9 @@ class LivePages_all(LivePages, unittest.TestCase):
             time.sleep(1)
             report = self.browser.evaluate("document.querySelector('.live textarea').value")
         self.assertEqual(report.count(": agrees with the reference"), 3, report)
-        wrong = re.search(r"^furnace: (\d+) of 65536 pixels are wrong after 64 samples, 0 samples are no numbers$", report, re.MULTILINE)
+        wrong = re.search(
+            r"^furnace: (\d+) of 65536 pixels are wrong after 64 samples, 0 samples are no numbers$", report, re.MULTILINE
+        )
         self.assertLess(int(wrong[1]), 20, report)  # missed hits: rays that pass between two triangles, as there is no `precise`
         self.assert_no_complaints()
 
@@ -195,7 +227,9 @@ class LivePages_all(LivePages, unittest.TestCase):
         self.frame("void frame.check()")
         self.wait("frame.results.textContent.includes('./lab check says')", "the check")
         self.assert_no_complaints()
-        return self.frame("frame.results.textContent"), self.frame("[...frame.results.querySelectorAll('li')].map(fact => fact.textContent)")
+        return self.frame("frame.results.textContent"), self.frame(
+            "[...frame.results.querySelectorAll('li')].map(fact => fact.textContent)"
+        )
 
     def test_the_check_passes_what_is_right(self):
         self.start(3)
@@ -208,6 +242,14 @@ class LivePages_all(LivePages, unittest.TestCase):
         self.edit("throughput *= PI * get_brdf(s, omega);", "throughput *= 2.0 * PI * get_brdf(s, omega);")
         text, facts = self.check()
         self.assertIn("Biased: the estimator is wrong on a scene.", text)
-        self.assertTrue(any(re.match(r"light in the glowing ball after two bounces: 2\.0\d ± 0\.0\d times as bright as it should be \(as by a factor 2\), whatever the albedo", fact)
-                            for fact in facts), facts)
+        self.assertTrue(
+            any(
+                re.match(
+                    r"light in the glowing ball after two bounces: 2\.0\d ± 0\.0\d times as bright as it should be \(as by a factor 2\), whatever the albedo",
+                    fact,
+                )
+                for fact in facts
+            ),
+            facts,
+        )
         self.assertFalse(any(fact.startswith("light of a lamp after one bounce") for fact in facts), facts)

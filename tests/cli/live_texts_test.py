@@ -81,7 +81,10 @@ class LiveTextsTest(LivePages, unittest.TestCase):
         self.start(2)
         self.click("Start exercise 1")
         self.start(3)
-        self.assertRegex(self.frame("frame.edits.textContent"), "^Changed by you: sample_hemisphere.glsl of chapter 2, which that chapter's page has, too. “Original text” undoes it")
+        self.assertRegex(
+            self.frame("frame.edits.textContent"),
+            "^Changed by you: sample_hemisphere.glsl of chapter 2, which that chapter's page has, too. “Original text” undoes it",
+        )
         self.assertFalse(self.frame("frame.edits.hidden"))
         self.click("Original text")
         self.assertTrue(self.frame("frame.edits.hidden"))
@@ -98,7 +101,9 @@ class LiveTextsTest(LivePages, unittest.TestCase):
         key = f"path tracing lab: {ESTIMATOR}"
         self.browser.evaluate(f"dispatchEvent(new StorageEvent('storage', {{ key: {json.dumps(key)} }}))")
         self.assertIn("Another tab", self.frame("frame.note.textContent"))
-        self.browser.evaluate("Storage.prototype.setItem = () => { throw new Error('forbidden'); }; Storage.prototype.removeItem = Storage.prototype.setItem")
+        self.browser.evaluate(
+            "Storage.prototype.setItem = () => { throw new Error('forbidden'); }; Storage.prototype.removeItem = Storage.prototype.setItem"
+        )
         self.edit("vec3 radiance = vec3(0.0);", "vec3 radiance = vec3(0.5);")
         self.assertIn("keeps no text", self.frame("frame.note.textContent"))
 

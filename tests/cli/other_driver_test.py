@@ -8,8 +8,12 @@ from tools_path import PROJECT  # first: it finds the others
 import numpy as np
 from program import BINARIES, RenderTest
 
-PLACES = [os.environ.get("LAB_SWIFTSHADER", ""), "/usr/lib/chromium/vk_swiftshader_icd.json",
-          "/usr/lib64/chromium-browser/vk_swiftshader_icd.json", "/opt/google/chrome/vk_swiftshader_icd.json"]
+PLACES = [
+    os.environ.get("LAB_SWIFTSHADER", ""),
+    "/usr/lib/chromium/vk_swiftshader_icd.json",
+    "/usr/lib64/chromium-browser/vk_swiftshader_icd.json",
+    "/opt/google/chrome/vk_swiftshader_icd.json",
+]
 DRIVER = next(filter(os.path.isfile, PLACES), "")
 SWIFTSHADER = {"VK_DRIVER_FILES": DRIVER, "VK_ICD_FILENAMES": DRIVER}
 CHAPTERS = sorted(path.name for path in (PROJECT / "chapters").glob("[0-9]*"))
@@ -33,8 +37,17 @@ class SwiftShader_all(RenderTest):
     def paths(self, device, chapter, scene, *options, environment=None):
         """The radiance of one path in each pixel."""
         program = BINARIES / chapter
-        picture = self.picture(device, "--samples=1", f"--device={device}", f"--max-path-length={LONGEST_PATH}", *options, scene=scene,
-                               size=(96, 96), program=program, environment=environment)
+        picture = self.picture(
+            device,
+            "--samples=1",
+            f"--device={device}",
+            f"--max-path-length={LONGEST_PATH}",
+            *options,
+            scene=scene,
+            size=(96, 96),
+            program=program,
+            environment=environment,
+        )
         self.assertEqual(picture.text("invalid_samples"), "0")
         return np.array(picture.pixels()).reshape(3, -1)
 
@@ -58,8 +71,9 @@ class SwiftShader_all(RenderTest):
         there parity would compare the drivers, as the test above does."""
         for program, least in (("shaders_tests", 100), ("parity_tests", 10), ("hard_cases_tests", 50)):
             with self.subTest(program=program):
-                code, out, _ = self.run_program("--gtest_filter=-*_all:*_all/*:*/native", program=BINARIES / program,
-                                                environment=SWIFTSHADER, timeout=1200)
+                code, out, _ = self.run_program(
+                    "--gtest_filter=-*_all:*_all/*:*/native", program=BINARIES / program, environment=SWIFTSHADER, timeout=1200
+                )
                 self.assertEqual(code, 0, out)
                 self.assertGreater(int(re.search(r"\[  PASSED  \] (\d+) tests", out).group(1)), least)
 

@@ -11,8 +11,15 @@ from package import make
 class ArchiveFilesTest(ProgramTest):
     def test_files_for_teachers_stay_out(self):
         kept = ["LICENSE", "README.md", "chapters/01_a/chapter.json", "chapters/01_a/path_trace.glsl", "tools/check/grading.py"]
-        for name in [*kept, "chapters/01_a/mistakes.json", "chapters/01_a/solutions/1.glsl",
-                     "notebook/variants/01_a/other.glsl", "chapters/01_a/solutions/README.md", "tools/course/bug.py", "tools/check/__pycache__/grading.pyc"]:
+        for name in [
+            *kept,
+            "chapters/01_a/mistakes.json",
+            "chapters/01_a/solutions/1.glsl",
+            "notebook/variants/01_a/other.glsl",
+            "chapters/01_a/solutions/README.md",
+            "tools/course/bug.py",
+            "tools/check/__pycache__/grading.pyc",
+        ]:
             (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
             self.write(name, "")
         self.assertEqual(sorted(make.tree_files(self.folder)), kept)
@@ -28,8 +35,9 @@ class LinuxArchive_all(ProgramTest):
         for name in ("cmake", "g++"):
             self.write(f"bin/{name}", "#!/bin/sh\nexit 1\n").chmod(0o755)
         environment = {"PATH": f"{self.folder}/bin:{os.environ['PATH']}"}
-        code, _, err = self.run_program("run", "1", "quad.json", "--width=8", "--height=8", "--samples=1", program=folder / "lab",
-                                        environment=environment)
+        code, _, err = self.run_program(
+            "run", "1", "quad.json", "--width=8", "--height=8", "--samples=1", program=folder / "lab", environment=environment
+        )
         self.assertEqual((code, err), (0, ""))
         self.assertTrue((self.folder / "output/01_uniform_sampling.png").exists())
         libraries = subprocess.run(["ldd", folder / "build/bin/01_uniform_sampling"], capture_output=True, text=True).stdout

@@ -40,12 +40,14 @@ class CodeBlockTest(unittest.TestCase):
         self.assertEqual(self.filled(2 * self.page("a = 1 | 1;")), 2 * self.page("a = 1 | 1;", "a = 1;\n"))
 
     def test_what_is_not_there_is_named(self):
-        for page, words in ((self.page("b = 2 | }"), "page.md: code of a.glsl: 'b = 2' is in 2 lines"),
-                            (self.page("c = 3 | }"), "'c = 3' is in 0 lines"),
-                            (self.page("float b | a = 1"), "'a = 1' is in no line from 'float b' on"),
-                            (self.page("a = 1 | }").replace("a.glsl", "b.glsl"), "code of b.glsl: there is no such file"),
-                            (self.page("a = 1"), "must be followed by"),
-                            (self.page("a = 1 | }").replace("<!-- end", "<!--"), "must be followed by")):
+        for page, words in (
+            (self.page("b = 2 | }"), "page.md: code of a.glsl: 'b = 2' is in 2 lines"),
+            (self.page("c = 3 | }"), "'c = 3' is in 0 lines"),
+            (self.page("float b | a = 1"), "'a = 1' is in no line from 'float b' on"),
+            (self.page("a = 1 | }").replace("a.glsl", "b.glsl"), "code of b.glsl: there is no such file"),
+            (self.page("a = 1"), "must be followed by"),
+            (self.page("a = 1 | }").replace("<!-- end", "<!--"), "must be followed by"),
+        ):
             with self.assertRaisesRegex(UserError, words.replace("(", r"\(")):
                 self.filled(page)
 
@@ -61,5 +63,7 @@ class StudiesTest(unittest.TestCase):
             file = Path(name) / "chapters/01_a/chapter.json"
             file.parent.mkdir(parents=True)
             file.write_text("{", encoding="utf-8")
-            with mock.patch.object(project, "ROOT", Path(name)), self.assertRaisesRegex(UserError, r"01_a/chapter\.json: not valid JSON: "):
+            with mock.patch.object(project, "ROOT", Path(name)), self.assertRaisesRegex(
+                UserError, r"01_a/chapter\.json: not valid JSON: "
+            ):
                 project.description("01_a")

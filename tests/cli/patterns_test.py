@@ -13,8 +13,42 @@ from tools_path import TOOLS  # first: it finds the others
 from project import UserError
 
 MANY, PATIENCE = 40, 60  # seconds for a text, of which all patterns together take milliseconds
-STARTS = ["", "[", "[`", "](", "<!-- ", "<!-- code: a | ", "| `f(", "\n\n    ", "<details><summary>\n\n", "```c\n", "Done when all tests named "]
-PIECES = ["[", "]", "`a b` ", "`f(x)`, ", "[`a`", "[a](b", "`", "(", "((a)", "![a](b)", "a, ", "a b\n", "<!-- ", " ", "\n", "x_1 ", "\\frac{", "*", "0", '"', "// "]
+STARTS = [
+    "",
+    "[",
+    "[`",
+    "](",
+    "<!-- ",
+    "<!-- code: a | ",
+    "| `f(",
+    "\n\n    ",
+    "<details><summary>\n\n",
+    "```c\n",
+    "Done when all tests named ",
+]
+PIECES = [
+    "[",
+    "]",
+    "`a b` ",
+    "`f(x)`, ",
+    "[`a`",
+    "[a](b",
+    "`",
+    "(",
+    "((a)",
+    "![a](b)",
+    "a, ",
+    "a b\n",
+    "<!-- ",
+    " ",
+    "\n",
+    "x_1 ",
+    "\\frac{",
+    "*",
+    "0",
+    '"',
+    "// ",
+]
 
 
 def patterns():
@@ -24,10 +58,19 @@ def patterns():
         if file.name != "__main__.py":
             with suppress(ModuleNotFoundError, UserError):  # of a package that only a debugger or another renderer has
                 module = importlib.import_module(".".join(file.relative_to(TOOLS).with_suffix("").parts))
-                found |= {(each.pattern, each.flags) for value in vars(module).values() for each in (value if isinstance(value, list) else [value])
-                          if isinstance(each, re.Pattern)}
+                found |= {
+                    (each.pattern, each.flags)
+                    for value in vars(module).values()
+                    for each in (value if isinstance(value, list) else [value])
+                    if isinstance(each, re.Pattern)
+                }
         for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and getattr(call.func.value, "id", "") == "re" and isinstance(call.args[0], ast.Constant):
+            if (
+                isinstance(call, ast.Call)
+                and isinstance(call.func, ast.Attribute)
+                and getattr(call.func.value, "id", "") == "re"
+                and isinstance(call.args[0], ast.Constant)
+            ):
                 found |= {(call.args[0].value, flags) for flags in (0, int(re.MULTILINE))}
     return sorted((pattern, flags) for pattern, flags in found if isinstance(pattern, str))
 

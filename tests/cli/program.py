@@ -109,8 +109,16 @@ class ProgramTest(unittest.TestCase):
         """Starts a program; environment variables that are None are removed."""
         variables = {**os.environ, **(environment or {})}
         variables = {name: value for name, value in variables.items() if value is not None}
-        return Program([program, *map(str, arguments)], cwd=self.folder, env=variables, stdin=subprocess.DEVNULL,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=prepare, text=True)
+        return Program(
+            [program, *map(str, arguments)],
+            cwd=self.folder,
+            env=variables,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            preexec_fn=prepare,
+            text=True,
+        )
 
     def run_program(self, *arguments, timeout=TIMEOUT_SECONDS, **options):
         """Runs a program to the end; returns exit code, standard output, standard error."""
@@ -155,8 +163,7 @@ class ProgramTest(unittest.TestCase):
 
         before = {path: path.stat().st_mtime_ns for path in self.folder.rglob("*")}
         with self.subTest(arguments=str(arguments)[:200]):
-            actual, out, err = self.run_program(*arguments, environment=environment, prepare=limit,
-                                                program=program)
+            actual, out, err = self.run_program(*arguments, environment=environment, prepare=limit, program=program)
             message = f"{arguments} printed {out!r} and the error {err!r}"
             self.assertEqual(actual, code, message)
             self.assertRegex(err, r"\A[^\n]{12,400}\n\Z", "one line, but " + message)

@@ -14,9 +14,17 @@ def scalar_materials():
     """The classes that bsdfs.py registers, by name."""
     classes = {}
     drjit = SimpleNamespace(
-        abs=abs, sqrt=math.sqrt, exp=math.exp, atanh=math.atanh, pi=math.pi, square=lambda x: x * x, minimum=min, maximum=max,
+        abs=abs,
+        sqrt=math.sqrt,
+        exp=math.exp,
+        atanh=math.atanh,
+        pi=math.pi,
+        square=lambda x: x * x,
+        minimum=min,
+        maximum=max,
         select=lambda condition, yes, no: yes if condition else no,
-        squared_norm=lambda v: v.x**2 + v.y**2 + v.z**2)
+        squared_norm=lambda v: v.x**2 + v.y**2 + v.z**2,
+    )
     mitsuba = SimpleNamespace(BSDF=object, register_bsdf=classes.__setitem__, reflect=lambda w: Vector(-w.x, -w.y, w.z))
     with mock.patch.dict(sys.modules, {"drjit": drjit, "mitsuba": mitsuba}):
         importlib.import_module("references.bsdfs")
@@ -45,6 +53,7 @@ class MaterialsOfReferencesTest(unittest.TestCase):
     def test_masking_is_correlated_by_height(self):
         def term(alpha, cosine):  # Lambda of the GGX distribution
             return 0.5 * (math.sqrt(1 + alpha**2 * (1 / cosine**2 - 1)) - 1)
+
         for alpha, a, b in ((0.16, 1.0, 1.0), (0.16, 0.3, 0.9), (0.5, 0.01, 0.02), (0.9, -0.4, -0.2)):
             with self.subTest(alpha=alpha, a=a, b=b):
                 first, second = term(alpha, a), term(alpha, b)
@@ -60,8 +69,11 @@ class MaterialsOfReferencesTest(unittest.TestCase):
         phong = object.__new__(scalar_materials()["phong_lobe"])
         phong.exponent = 20.0
         phong.lobe_albedos = lambda si, active: (0.0, 1.0, 1.0)
-        for wi, wo, expected in ((direction(0.5), direction(0.5, math.pi), 22 / (2 * math.pi) * 0.5),  # the mirror image
-                                 (direction(0.5), direction(0.5), 0), (direction(0), direction(0), 0)):
+        for wi, wo, expected in (
+            (direction(0.5), direction(0.5, math.pi), 22 / (2 * math.pi) * 0.5),  # the mirror image
+            (direction(0.5), direction(0.5), 0),
+            (direction(0), direction(0), 0),
+        ):
             with self.subTest(wi=wi, wo=wo):
                 value, _ = phong.eval_pdf(None, SimpleNamespace(wi=wi), wo, True)
                 self.assertAlmostEqual(value, expected, delta=1e-5)

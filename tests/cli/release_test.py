@@ -56,8 +56,10 @@ class WorkflowsTest(unittest.TestCase):
         settings = json.loads((PROJECT / ".devcontainer/devcontainer.json").read_text(encoding="utf-8"))
         place = PROJECT / ".devcontainer" / settings["build"]["dockerfile"]
         self.assertTrue(place.samefile(PROJECT / "Containerfile"))
-        self.assertTrue((place.parent / settings["build"]["context"] / ".devcontainer").exists() or
-                        (PROJECT / ".devcontainer" / settings["build"]["context"]).samefile(PROJECT))
+        self.assertTrue(
+            (place.parent / settings["build"]["context"] / ".devcontainer").exists()
+            or (PROJECT / ".devcontainer" / settings["build"]["context"]).samefile(PROJECT)
+        )
 
 
 class Release_all(unittest.TestCase):
@@ -67,5 +69,12 @@ class Release_all(unittest.TestCase):
         subprocess.run([sys.executable, "-B", PROJECT / "tools", "package", "release"], check=True, stdout=subprocess.DEVNULL)
         folder, number = PROJECT / "output/release", make.version()
         names = sorted(path.name for path in folder.iterdir())
-        self.assertEqual(names, ["SHA256SUMS", "notes.md", *(f"path_tracing_lab-{number}-{name}" for name in ("book.zip", "linux.tar.xz", "windows.zip"))])
+        self.assertEqual(
+            names,
+            [
+                "SHA256SUMS",
+                "notes.md",
+                *(f"path_tracing_lab-{number}-{name}" for name in ("book.zip", "linux.tar.xz", "windows.zip")),
+            ],
+        )
         subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=folder, check=True)

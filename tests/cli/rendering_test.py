@@ -8,6 +8,7 @@ from image_files import Exr, read_png
 from program import BINARIES, MERGE, ProgramTest, RenderTest
 from project import write_bytes
 
+
 class Determinism(RenderTest):
     def test_the_same_command_gives_the_same_bits(self):
         first = self.picture("a", "--samples=16")
@@ -155,13 +156,24 @@ class Views(RenderTest):
 
     def test_focus_shows_the_circle_of_confusion_in_pixels(self):
         # The quad is 3 units away. In the plane in focus, 2 units away, a pixel is 2 * 2 * tan(20 degrees) / 16 high.
-        picture = self.picture("view", "--samples=1", "--view=focus", "--aperture-diameter=0.5", "--focus-distance=2", scene="quad.json",
-                               size=(16, 16), program=BINARIES / "12_lens")
-        self.assertAlmostEqual(picture.channels["R"][8 * 16 + 8], 0.5 * (3 - 2) / 3 / (4 * math.tan(math.radians(20)) / 16), delta=0.01)
+        picture = self.picture(
+            "view",
+            "--samples=1",
+            "--view=focus",
+            "--aperture-diameter=0.5",
+            "--focus-distance=2",
+            scene="quad.json",
+            size=(16, 16),
+            program=BINARIES / "12_lens",
+        )
+        self.assertAlmostEqual(
+            picture.channels["R"][8 * 16 + 8], 0.5 * (3 - 2) / 3 / (4 * math.tan(math.radians(20)) / 16), delta=0.01
+        )
 
     def test_chapters_without_media_say_so(self):
-        _, _, err = self.run_program("fog", "--samples=1", "--width=8", "--height=8", "--headless", "--output=a.exr",
-                                     program=BINARIES / "12_lens")
+        _, _, err = self.run_program(
+            "fog", "--samples=1", "--width=8", "--height=8", "--headless", "--output=a.exr", program=BINARIES / "12_lens"
+        )
         self.assertIn("leaves out its media", err)
         self.assert_refused(["fog", "--report=r.json", "--headless"], "cannot render the media", program=BINARIES / "12_lens")
 
@@ -170,7 +182,9 @@ class Views(RenderTest):
         self.assertEqual(code, 0)
         self.assertIn("leaves out its lens", err)
         self.assert_refused(["quad.json", "--aperture-diameter=0.1", "--report=r.json", "--headless"], "cannot render the lens")
-        self.assert_refused(["focus", "--report=r.json", "--headless"], "cannot render the lens", program=BINARIES / "11_microfacets")
+        self.assert_refused(
+            ["focus", "--report=r.json", "--headless"], "cannot render the lens", program=BINARIES / "11_microfacets"
+        )
         for bad in ("--aperture-diameter=-1", "--aperture-diameter=nan", "--focus-distance=0", "--focus-distance=inf"):
             self.assert_refused(["quad.json", bad, "--headless"], bad.split("=")[0])
 
@@ -242,8 +256,10 @@ class WrittenFilesTest(ProgramTest):
         file, link = self.write("kept/file.png", "older contents"), self.folder / "link.png"
         file.chmod(0o600)
         link.symlink_to("kept/file.png")
-        for write in (lambda: write_bytes(link, b"contents"),
-                      lambda: self.render("quad.json", "--samples=1", "--width=4", "--height=4", "--output", link)):
+        for write in (
+            lambda: write_bytes(link, b"contents"),
+            lambda: self.render("quad.json", "--samples=1", "--width=4", "--height=4", "--output", link),
+        ):
             before = file.read_bytes()
             write()
             self.assertTrue(link.is_symlink())

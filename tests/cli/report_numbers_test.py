@@ -14,8 +14,9 @@ PIXELS = 16 * 16
 REFERENCE = {"mean": [0.5, 0.25, 0.125], "variance": [1e-10] * 3, "freedom": 63}
 
 
-def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2,
-                  evenness=0.5):
+def synthetic_run(
+    dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exponent=-1.0, bias=0.0, deviation=0.2, evenness=0.5
+):
     """Rows at 1, 2, 4, …: error × samples^exponent with noise, and image means with the given deviation for one sample, which
     falls like samples^-evenness."""
     dice = random.Random(dice_seed)
@@ -25,15 +26,38 @@ def synthetic_run(dice_seed, samples=64, error=1.0, seconds=0.01, noise=0.0, exp
         for channel, mean in enumerate(REFERENCE["mean"]):
             sums[channel] += mean * (added * (1 + bias) + deviation * added ** (1 - evenness) * dice.gauss(0, 1))
         done += added
-        rows.append({"samples": done, "seconds": seconds * done, "device_seconds": 0.5 * seconds * done, "rays": 3 * PIXELS * done,
-                     "rel_mse": error * done**exponent * math.exp(noise * dice.gauss(0, 1)), "mean": [s / done for s in sums]})
+        rows.append(
+            {
+                "samples": done,
+                "seconds": seconds * done,
+                "device_seconds": 0.5 * seconds * done,
+                "rays": 3 * PIXELS * done,
+                "rel_mse": error * done**exponent * math.exp(noise * dice.gauss(0, 1)),
+                "mean": [s / done for s in sums],
+            }
+        )
     return {"command_seconds": rows[-1]["seconds"] + 0.3, "rows": rows}
 
 
 def synthetic_case(name, count=5, first_dice=1, program="", **truth):
     runs = [synthetic_run(dice, **truth) | {"seed": seed} for seed, dice in enumerate(range(first_dice, first_dice + count), 1)]
-    return {"scene": "box", "case": name, "is_peer": name == "Mitsuba", "program": program, "options": "", "backend": "", "note": "", "refused": None,
-            "width": 16, "height": 16, "scale": 1, "paths_per_sample": 1, "max_path_length": 3, "reference": REFERENCE, "runs": runs}
+    return {
+        "scene": "box",
+        "case": name,
+        "is_peer": name == "Mitsuba",
+        "program": program,
+        "options": "",
+        "backend": "",
+        "note": "",
+        "refused": None,
+        "width": 16,
+        "height": 16,
+        "scale": 1,
+        "paths_per_sample": 1,
+        "max_path_length": 3,
+        "reference": REFERENCE,
+        "runs": runs,
+    }
 
 
 def summary(*cases):
@@ -46,7 +70,12 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertGreater(interval[2], truth)
 
     def test_quantiles_of_students_distribution(self):
-        for confidence, freedom, expected in ((0.95, 4, 2.776445), (0.999, 10, 4.586894), (0.95, 1e6, 1.959966), (0.2, 2, 0.288675)):
+        for confidence, freedom, expected in (
+            (0.95, 4, 2.776445),
+            (0.999, 10, 4.586894),
+            (0.95, 1e6, 1.959966),
+            (0.2, 2, 0.288675),
+        ):
             self.assertAlmostEqual(numbers.two_sided(confidence, freedom), expected, delta=2e-6)
 
     def test_slopes(self):
@@ -59,7 +88,9 @@ class ReportNumbersTest(unittest.TestCase):
                 self.assertLess(noisy[key][2] - noisy[key][1], 0.4)
 
     def test_error_times_time_is_relative_to_the_first_case(self):
-        first, second = summary(synthetic_case("a", error=4.0, seconds=0.01), synthetic_case("b", error=0.25, seconds=0.02))["cases"]
+        first, second = summary(synthetic_case("a", error=4.0, seconds=0.01), synthetic_case("b", error=0.25, seconds=0.02))[
+            "cases"
+        ]
         self.assertEqual(first["error_time"], [1.0, None, None])
         self.assertAlmostEqual(second["error_time"][0], 1 / 8)
         self.assertAlmostEqual(second["error_device_time"][0], 1 / 8)
@@ -68,8 +99,10 @@ class ReportNumbersTest(unittest.TestCase):
         self.assertAlmostEqual(second["rays_per_device_second"], 3 * PIXELS / 0.01)
 
     def test_gain_over_a_peer_and_time_to_one_percent(self):
-        scene = summary(synthetic_case("a", error=0.8, seconds=0.01, noise=0.05),
-                        synthetic_case("Mitsuba", error=0.8, seconds=0.03, noise=0.05, first_dice=100))
+        scene = summary(
+            synthetic_case("a", error=0.8, seconds=0.01, noise=0.05),
+            synthetic_case("Mitsuba", error=0.8, seconds=0.03, noise=0.05, first_dice=100),
+        )
         self.assert_covers(scene["gains"][0]["gain"], 3)
         self.assertEqual([gain["case"] for gain in scene["gains"]], ["a"])  # no gain of the peer over itself
         self.assert_covers(scene["cases"][0]["seconds_to_target"], 0.3 + 0.8 / 1e-4 * 0.01)
@@ -111,7 +144,10 @@ class ReportNumbersTest(unittest.TestCase):
         trials, found = 400, {"error": 0, "error_time": 0, "gain": 0, "slope": 0}
         for trial in range(trials):
             shift = 0.001 * random.Random(-trial).gauss(0, 1)
-            cases = [synthetic_case(name, error=error, noise=0.01, first_dice=10 * trial + 1) for name, error in (("a", 1.0), ("b", 0.5))]
+            cases = [
+                synthetic_case(name, error=error, noise=0.01, first_dice=10 * trial + 1)
+                for name, error in (("a", 1.0), ("b", 0.5))
+            ]
             cases.append(synthetic_case("Mitsuba", error=2.0, noise=0.01, first_dice=-10 * trial - 9))
             for case in cases:
                 case["reference"] = REFERENCE | {"rel_mse_deviation": 0.001}
@@ -120,8 +156,12 @@ class ReportNumbersTest(unittest.TestCase):
             scene = summary(*cases)
             first, second, _ = scene["cases"]
             gain = next(gain["gain"] for gain in scene["gains"] if gain["case"] == "b")
-            for name, (_, low, high), truth in (("error", first["error"], 1 / 64), ("error_time", second["error_time"], 1 / 2), ("gain", gain, 4),
-                                                ("slope", first["slope_samples"], -1)):
+            for name, (_, low, high), truth in (
+                ("error", first["error"], 1 / 64),
+                ("error_time", second["error_time"], 1 / 2),
+                ("gain", gain, 4),
+                ("slope", first["slope_samples"], -1),
+            ):
                 found[name] += low < truth < high
         for name in found:
             self.assert_share(found[name], trials, 0.95)
@@ -181,12 +221,20 @@ class ReportNumbersTest(unittest.TestCase):
         also the detectable bias as stated, in standard errors of the mean."""
         dice, deviation, freedom = np.random.default_rng(runs), 0.1, 63
         error = deviation / math.sqrt(runs)
-        reference = {"mean": 1 + part * error * dice.normal(size=trials), "freedom": freedom,
-                     "variance": (part * error) ** 2 * dice.chisquare(freedom, trials) / freedom}
+        reference = {
+            "mean": 1 + part * error * dice.normal(size=trials),
+            "freedom": freedom,
+            "variance": (part * error) ** 2 * dice.chisquare(freedom, trials) / freedom,
+        }
         means = 1 + bias * error + deviation * dice.normal(size=(runs, trials))
-        tests = numbers.biases([{"rows": [{"samples": 1, "mean": mean}]} for mean in means], reference, numbers.FALSE_ALARMS / level)
+        tests = numbers.biases(
+            [{"rows": [{"samples": 1, "mean": mean}]} for mean in means], reference, numbers.FALSE_ALARMS / level
+        )
         # Noise of exactly the stated size: means of two values at the corresponding distance.
-        known = [{"rows": [{"samples": 1, "mean": [1 + deviation * math.sqrt((runs - 1) / runs) * (-1) ** run]}]} for run in range(runs)]
+        known = [
+            {"rows": [{"samples": 1, "mean": [1 + deviation * math.sqrt((runs - 1) / runs) * (-1) ** run]}]}
+            for run in range(runs)
+        ]
         sure = {"mean": [1.0], "variance": [(part * error) ** 2], "freedom": freedom}
         stated = numbers.biases(known, sure, numbers.FALSE_ALARMS / level)[0]["detectable"] / error
         return sum(test["is_biased"] for test in tests), trials, stated
@@ -210,7 +258,7 @@ class ReportNumbersTest(unittest.TestCase):
                 size = np.linspace(0, 6, 200001)
                 threshold = numbers.two_sided(1 - level, 1)
                 found = np.vectorize(math.erfc, otypes=[float])((threshold * size - shift) / math.sqrt(2)) / 2
-                density = math.sqrt(2 / math.pi) * np.exp(-size**2 / 2)
+                density = math.sqrt(2 / math.pi) * np.exp(-(size**2) / 2)
                 self.assertAlmostEqual(np.trapz(found * density, size), numbers.POWER, delta=1e-4)
 
     def test_no_level_is_exceeded_where_the_reference_is_noisy(self):

@@ -65,8 +65,10 @@ class ReportCommandTest(Reports, ProgramTest):
         binaries = self.folder / "binaries"
         binaries.mkdir()
         (binaries / "01_uniform_sampling").symlink_to(BINARIES / "01_uniform_sampling")
-        program = self.write("binaries/03_next_event_estimation", LOSES_DEVICE.format(
-            broken=self.write("broken", ""), program=BINARIES / "03_next_event_estimation"))
+        program = self.write(
+            "binaries/03_next_event_estimation",
+            LOSES_DEVICE.format(broken=self.write("broken", ""), program=BINARIES / "03_next_event_estimation"),
+        )
         program.chmod(0o755)
         environment = {"LAB_BINARIES": str(binaries)}
 
@@ -90,7 +92,16 @@ class ReportCommandTest(Reports, ProgramTest):
         for address in re.findall(r"""(?:src|href)\s*=\s*["']([^"']*)|url\(([^)]*)\)""", page):
             self.assertRegex("".join(address), r"^['\"]?(#|data:)", "refers to something outside")
         self.assertNotRegex(page, r"@import|<script|<link|<iframe")
-        for word in ("cornell_box_1", "chapter 1", "chapter 3", "would have been found", "below 1 is better", "Equal time", "Equal error", "<svg"):
+        for word in (
+            "cornell_box_1",
+            "chapter 1",
+            "chapter 3",
+            "would have been found",
+            "below 1 is better",
+            "Equal time",
+            "Equal error",
+            "<svg",
+        ):
             self.assertIn(word, page)
         self.assertEqual(page.count("<img"), 2 * (1 + 2 * 2))  # at equal time and error the reference, pictures, differences
         content = json.loads((self.folder / "report/report.json").read_text())
@@ -164,7 +175,11 @@ class LongReports_all(Reports, ProgramTest):
 
     def test_large_pictures_are_compared_with_small_references(self):
         """As far from the reference as small ones with the same total number of samples."""
-        pairs, settings, found = [(PROJECT / "assets/scenes/cornell_box.json", REFERENCE)], {"backend": "compute", "device": None}, []
+        pairs, settings, found = (
+            [(PROJECT / "assets/scenes/cornell_box.json", REFERENCE)],
+            {"backend": "compute", "device": None},
+            [],
+        )
         for is_large, samples in ((False, 64), (True, 1)):
             (case,) = measurement.report_cases(pairs, [3], is_large=is_large)
             self.assertEqual((case["width"], case["scale"]), (1024, 8) if is_large else (128, 1))

@@ -56,6 +56,7 @@ class Report(RenderTest):
 
     def test_cpu_seconds_are_those_of_all_threads(self):
         """As many as more samples take, by the system's account of the program."""
+
         def seconds(samples):
             before = resource.getrusage(resource.RUSAGE_CHILDREN)
             row = self.report(f"--samples={samples}", size=(256, 256))["rows"][-1]
@@ -109,7 +110,11 @@ class Report(RenderTest):
         """With any number of samples, from any first sample, when resumed, and with points that are not independent."""
         for chapter in ("05_russian_roulette", "09_low_discrepancy_points"):
             program = BINARIES / chapter
-            for name, arguments in (("a", ["--samples=100"]), ("b", ["--samples=201", "--resume=a.exr"]), ("c", ["--samples=7", "--first-sample=3"])):
+            for name, arguments in (
+                ("a", ["--samples=100"]),
+                ("b", ["--samples=201", "--resume=a.exr"]),
+                ("c", ["--samples=7", "--first-sample=3"]),
+            ):
                 out = self.render(*self.command(*arguments), f"--output={name}.exr", program=program)
                 self.assertRegex(out, "(?m)^noise .*estimated", f"{chapter}, {arguments}")
                 if "--samples=100" in arguments:  # for an even number the file contains the standard errors
@@ -136,7 +141,11 @@ class Report(RenderTest):
 
     def test_a_reference_of_something_else_is_noted(self):
         reference = PROJECT / "assets/references/cornell_box_6.exr"
-        for scene, length, note in (("cornell_box", 6, None), ("cornell_box", 7, "--max-path-length 6"), ("torus", 6, "another scene")):
+        for scene, length, note in (
+            ("cornell_box", 6, None),
+            ("cornell_box", 7, "--max-path-length 6"),
+            ("torus", 6, "another scene"),
+        ):
             with self.subTest(scene=scene, length=length):
                 arguments = "--samples=1", f"--max-path-length={length}", f"--reference={reference}"
                 command = self.command(*arguments, scene=scene, size=(128, 128))

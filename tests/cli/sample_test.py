@@ -69,12 +69,23 @@ class SampleTest(ProgramTest):
         """By its number, in the folder of a student's copy: its points, right or wrong."""
         tree = self.folder / "lab"
         copy_project(tree, program=BINARIES / "sample_points")
-        for number, replace, chance in ((20, "2.0 * PI * u.x - PI", "which is chance"), (21, "1.5 * PI * u.x - PI", "too large for chance")):
+        for number, replace, chance in (
+            (20, "2.0 * PI * u.x - PI", "which is chance"),
+            (21, "1.5 * PI * u.x - PI", "too large for chance"),
+        ):
             copy = shutil.copytree(tree / "chapters/02_cosine_sampling", tree / f"chapters/{number}_mine")
             shader = copy / "sample_hemisphere.glsl"
             shader.write_text(shader.read_text(encoding="utf-8").replace("2.0 * PI * u.x - PI", replace), encoding="utf-8")
-            out = self.render("-B", tree / "tools", "sample", number, "--output", self.folder / "picture.png", program=sys.executable,
-                              environment=UNOPTIMISED | {"LAB_BINARIES": None})
+            out = self.render(
+                "-B",
+                tree / "tools",
+                "sample",
+                number,
+                "--output",
+                self.folder / "picture.png",
+                program=sys.executable,
+                environment=UNOPTIMISED | {"LAB_BINARIES": None},
+            )
             self.assertIn(f"directions of chapter {number}", out)
             self.assertRegex(out, rf"chi² of cos θ and φ: .*{chance}")
 

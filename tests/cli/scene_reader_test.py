@@ -53,7 +53,10 @@ class SceneReaderTest(ProgramTest):
     def test_other_materials_than_those_of_the_mesh(self):
         """By name, or a single one for all of it."""
         self.write("model.obj", QUAD_OBJ)
-        for mtl, diffuse in (("newmtl red\nKd 0.5 0 0\n", [0.5, 0, 0]), ("newmtl red\nnewmtl white\nKd 0.25 0.25 0\n", [0.25, 0.25, 0])):
+        for mtl, diffuse in (
+            ("newmtl red\nKd 0.5 0 0\n", [0.5, 0, 0]),
+            ("newmtl red\nnewmtl white\nKd 0.25 0.25 0\n", [0.25, 0.25, 0]),
+        ):
             self.write("more/other.mtl", mtl)
             scene = self.write("scene.json", json.dumps({"meshes": [{"file": "model.obj", "materials": "more/other.mtl"}]}))
             (surface,) = read_scene(scene).surfaces
@@ -79,35 +82,67 @@ def box(centre, size, mtl="none.mtl", faces="1243 5786 1562 3487 1375 2684"):
 # What the chapters read: for each key of a scene a path to it and another value, for each keyword of a material the lines before
 # it and its own.
 SCENE = {
-    "description": "one", "meshes": [{"file": "quad.obj", "rotation": {"axis": [0, 1, 0], "degrees": 30}}],
-    "camera": {"position": [0, 0, 3], "target": [0, 0, 0]}, "background": {"radiance": [1, 1, 1]},
+    "description": "one",
+    "meshes": [{"file": "quad.obj", "rotation": {"axis": [0, 1, 0], "degrees": 30}}],
+    "camera": {"position": [0, 0, 3], "target": [0, 0, 0]},
+    "background": {"radiance": [1, 1, 1]},
 }
 FOG = {"extinction": 1, "albedo": 1}
 GRID = {**FOG, "density": "quad.obj", "box": [[0, 0, 0], [1, 1, 1]]}  # of which only the name and the bytes are read
 PROBE = {"light_probe": "quad.obj", "intensity": 2}  # of which only the name and the bytes are read
 KEYS = {
-    "description": ("description", "two"), "meshes": ("meshes", 2 * SCENE["meshes"]), "camera": ("camera", None),
-    "background": ("background", {"radiance": 0.5}), "specular": ("specular", True),
-    "multiple_scattering": ("multiple_scattering", True), "width": ("width", 300), "height": ("height", 300),
-    "samples": ("samples", 3), "max_path_length": ("max_path_length", 3), "file": ("meshes/0/file", "other.obj"),
+    "description": ("description", "two"),
+    "meshes": ("meshes", 2 * SCENE["meshes"]),
+    "camera": ("camera", None),
+    "background": ("background", {"radiance": 0.5}),
+    "specular": ("specular", True),
+    "multiple_scattering": ("multiple_scattering", True),
+    "width": ("width", 300),
+    "height": ("height", 300),
+    "samples": ("samples", 3),
+    "max_path_length": ("max_path_length", 3),
+    "file": ("meshes/0/file", "other.obj"),
     "materials": ("meshes/0/materials", "other.mtl"),
-    "scale": ("meshes/0/scale", 2), "rotation": ("meshes/0/rotation", {"axis": [1, 0, 0], "degrees": 30}),
-    "translation": ("meshes/0/translation", [1, 0, 0]), "axis": ("meshes/0/rotation/axis", [1, 0, 0]),
-    "degrees": ("meshes/0/rotation/degrees", 40), "position": ("camera/position", [0, 1, 3]),
-    "target": ("camera/target", [0, 1, 0]), "up": ("camera/up", [1, 0, 0]), "vertical_fov": ("camera/vertical_fov", 50),
-    "fog": ("fog", FOG), "extinction": ("fog", {**FOG, "extinction": 2}), "albedo": ("fog", {**FOG, "albedo": 0.5}),
-    "anisotropy": ("fog", {**FOG, "anisotropy": 0.5}), "medium": ("meshes/0/medium", FOG),
-    "boundary": ("meshes/0/medium", {**FOG, "boundary": "open"}), "density": ("fog", {**GRID, "density": "other.obj"}),
+    "scale": ("meshes/0/scale", 2),
+    "rotation": ("meshes/0/rotation", {"axis": [1, 0, 0], "degrees": 30}),
+    "translation": ("meshes/0/translation", [1, 0, 0]),
+    "axis": ("meshes/0/rotation/axis", [1, 0, 0]),
+    "degrees": ("meshes/0/rotation/degrees", 40),
+    "position": ("camera/position", [0, 1, 3]),
+    "target": ("camera/target", [0, 1, 0]),
+    "up": ("camera/up", [1, 0, 0]),
+    "vertical_fov": ("camera/vertical_fov", 50),
+    "fog": ("fog", FOG),
+    "extinction": ("fog", {**FOG, "extinction": 2}),
+    "albedo": ("fog", {**FOG, "albedo": 0.5}),
+    "anisotropy": ("fog", {**FOG, "anisotropy": 0.5}),
+    "medium": ("meshes/0/medium", FOG),
+    "boundary": ("meshes/0/medium", {**FOG, "boundary": "open"}),
+    "density": ("fog", {**GRID, "density": "other.obj"}),
     "box": ("fog", {**GRID, "box": [[0, 0, 0], [1, 2, 1]]}),
-    "aperture_diameter": ("camera/aperture_diameter", 0.1), "focus_distance": ("camera/focus_distance", 2),
-    "radiance": ("background/radiance", 0.5), "light_probe": ("background", PROBE),
-    "intensity": ("background", {**PROBE, "intensity": 3}), "rotation_degrees": ("background", {**PROBE, "rotation_degrees": 90}),
+    "aperture_diameter": ("camera/aperture_diameter", 0.1),
+    "focus_distance": ("camera/focus_distance", 2),
+    "radiance": ("background/radiance", 0.5),
+    "light_probe": ("background", PROBE),
+    "intensity": ("background", {**PROBE, "intensity": 3}),
+    "rotation_degrees": ("background", {**PROBE, "rotation_degrees": 90}),
 }
 KEYWORDS = {
-    "newmtl": ("", "newmtl another"), "map_Kd": ("", "map_Kd quad.obj"), "Kd": ("", "Kd 0.2 0.2 0.2"), "Ke": ("", "Ke 1 1 1"),
-    "Ks": ("", "Ks 0.1 0.1 0.1"), "Ns": ("Ks 0.1 0.1 0.1", "Ns 5"), "d": ("Ni 1.5", "d 0.5"), "Tr": ("Ni 1.5", "Tr 0.5"),
-    "Ni": ("d 0.5", "Ni 1.3"), "Tf": ("d 0.5", "Tf 0.5 0.5 0.5"), "Kt": ("d 0.5", "Kt 0.5 0.5 0.5"), "Pr": ("", "Pr 0.3"),
-    "Pm": ("Pr 0.3", "Pm 1"), "Ka": ("", "Ka 1 1 1"), "illum": ("", "illum 4"),
+    "newmtl": ("", "newmtl another"),
+    "map_Kd": ("", "map_Kd quad.obj"),
+    "Kd": ("", "Kd 0.2 0.2 0.2"),
+    "Ke": ("", "Ke 1 1 1"),
+    "Ks": ("", "Ks 0.1 0.1 0.1"),
+    "Ns": ("Ks 0.1 0.1 0.1", "Ns 5"),
+    "d": ("Ni 1.5", "d 0.5"),
+    "Tr": ("Ni 1.5", "Tr 0.5"),
+    "Ni": ("d 0.5", "Ni 1.3"),
+    "Tf": ("d 0.5", "Tf 0.5 0.5 0.5"),
+    "Kt": ("d 0.5", "Kt 0.5 0.5 0.5"),
+    "Pr": ("", "Pr 0.3"),
+    "Pm": ("Pr 0.3", "Pm 1"),
+    "Ka": ("", "Ka 1 1 1"),
+    "illum": ("", "illum 4"),
 }
 WITHOUT_EFFECT = {"description", "samples", "Ka", "illum"}
 
@@ -230,8 +265,11 @@ class LampsInTheSamePlaceTest(ProgramTest):
         return [[name for name, _ in sides[front]] for front in (1, -1)], sum(distances)
 
     def test_those_with_two_sides_shine_on_both(self):
-        for faces, back in (("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", "lamp"), ("usemtl lamp\nf 1 2 3 4\nusemtl dim\nf 1 4 3 2\n", "dim"),
-                            ("usemtl lamp\nf 1 2 3 4\nusemtl wall\nf 1 4 3 2\n", "wall")):
+        for faces, back in (
+            ("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", "lamp"),
+            ("usemtl lamp\nf 1 2 3 4\nusemtl dim\nf 1 4 3 2\n", "dim"),
+            ("usemtl lamp\nf 1 2 3 4\nusemtl wall\nf 1 4 3 2\n", "wall"),
+        ):
             with self.subTest(back=back):
                 sides, distance = self.lamps(faces)
                 self.assertEqual(sides, [["lamp"] * 2, [back] * 2])
@@ -254,12 +292,16 @@ class LampsInTheSamePlaceTest(ProgramTest):
 
     def test_what_is_left_to_chance_is_refused(self):
         quad = "usemtl lamp\nf 1 2 3 4\n"
-        for faces, placements in ((quad, ({}, {"scale": [1, 1, -1]})),  # the same lamp, turned
-                                  (quad, ({}, {"translation": [0.5, 0, 0]})),  # a part of it
-                                  (quad, ({}, {"scale": 0.5})), (quad, ({"scale": 0.5}, {})),
-                                  (quad + "f 4 3 2 1\n", ({},)),  # two triangles of one side meet each of the other
-                                  (quad + "usemtl wall\nf 2 3 4 1\n", ({},)), (quad + "usemtl glass\nf 1 2 3 4\n", ({},)),
-                                  ("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", ({}, {"scale": [0.9, 0.9, 1]}))):
+        for faces, placements in (
+            (quad, ({}, {"scale": [1, 1, -1]})),  # the same lamp, turned
+            (quad, ({}, {"translation": [0.5, 0, 0]})),  # a part of it
+            (quad, ({}, {"scale": 0.5})),
+            (quad, ({"scale": 0.5}, {})),
+            (quad + "f 4 3 2 1\n", ({},)),  # two triangles of one side meet each of the other
+            (quad + "usemtl wall\nf 2 3 4 1\n", ({},)),
+            (quad + "usemtl glass\nf 1 2 3 4\n", ({},)),
+            ("usemtl lamp\nf 1 2 3 4\nf 1 4 3 2\n", ({}, {"scale": [0.9, 0.9, 1]})),
+        ):
             with self.subTest(faces=faces, placements=placements):
                 with self.assertRaisesRegex(UserError, "scene.json: a lamp .* by chance.* move one"):
                     self.lamps(faces, placements)
@@ -303,20 +345,25 @@ class BodiesTest(ProgramTest):
         for z, expected in ((9, 1), (2, 3), (0, 2)):
             self.assertEqual(self.sides([(box([0, 0, 0], 1), 2), (box([0, 0, 0], 4), 3)], (0, 0, z), FOG)[1], expected)
         grid = {**GRID, "density": "0.obj", "extinction": 7}
-        self.assertEqual(self.sides([(box([0.5] * 3, 0.25), 2), (box([5] * 3, 1), 3)], (0.1, 0.1, 0.1), grid),
-                         ({0.25: {(2, 7)}, 1: {(3, None)}}, 7))
+        self.assertEqual(
+            self.sides([(box([0.5] * 3, 0.25), 2), (box([5] * 3, 1), 3)], (0.1, 0.1, 0.1), grid),
+            ({0.25: {(2, 7)}, 1: {(3, None)}}, 7),
+        )
 
     def test_what_has_no_clear_inside_is_refused(self):
         whole = (box([0, 0, 0], 1), 1)
         floor = box([0, -9 - 1, 0], 9), None
-        for what, meshes in (("not closed", [(box([0, 0, 0], 1, faces="1243 5786 1562 3487 1375"), 1)]),
-                             ("touches or overlaps", [whole, (box([1.9, 1.9, 1.9], 1), 2)]),  # no centre of a triangle is inside
-                             ("touches or overlaps", [whole, (box([2, 0, 0], 1), 2)]), ("touches or overlaps", [whole, whole]),
-                             ("touches or overlaps", [whole, (box([0, 0, 0], 1, "glass.mtl"), None)]),
-                             ("touches or overlaps", [whole, (box([0, -10.0003, 0], 9), None)]),
-                             ("touches or overlaps", [floor, whole]),
-                             ("16 open boundaries", [(box([3 * i, 0, 0], 1), 1) for i in range(17)]),
-                             ("inwards", [(box([0, 0, 0], 1, "glass.mtl", "3421 6875 2651 7843 5731 4862"), 1)])):
+        for what, meshes in (
+            ("not closed", [(box([0, 0, 0], 1, faces="1243 5786 1562 3487 1375"), 1)]),
+            ("touches or overlaps", [whole, (box([1.9, 1.9, 1.9], 1), 2)]),  # no centre of a triangle is inside
+            ("touches or overlaps", [whole, (box([2, 0, 0], 1), 2)]),
+            ("touches or overlaps", [whole, whole]),
+            ("touches or overlaps", [whole, (box([0, 0, 0], 1, "glass.mtl"), None)]),
+            ("touches or overlaps", [whole, (box([0, -10.0003, 0], 9), None)]),
+            ("touches or overlaps", [floor, whole]),
+            ("16 open boundaries", [(box([3 * i, 0, 0], 1), 1) for i in range(17)]),
+            ("inwards", [(box([0, 0, 0], 1, "glass.mtl", "3421 6875 2651 7843 5731 4862"), 1)]),
+        ):
             with self.subTest(what=what, meshes=len(meshes)):
                 with self.assertRaisesRegex(UserError, rf"\A[^\n]*scene.json: [^\n]* around \([^\n]*{what}[^\n]*\Z"):
                     self.sides(meshes)

@@ -30,7 +30,14 @@ class ShaderFiles(ProgramTest):
     def setUp(self):
         super().setUp()
         self.shader = self.write("mine/path_trace.glsl", "")
-        self.arguments = ["quad.json", "--width=4", "--height=4", "--samples=1", "--backend=compute", "--shader=path_trace.glsl=mine/path_trace.glsl"]
+        self.arguments = [
+            "quad.json",
+            "--width=4",
+            "--height=4",
+            "--samples=1",
+            "--backend=compute",
+            "--shader=path_trace.glsl=mine/path_trace.glsl",
+        ]
 
     def beside(self, name, contents):
         """Writes a file next to the shader."""
@@ -69,9 +76,13 @@ class ShaderFiles(ProgramTest):
                 self.assert_shader_refused(own.replace(right, wrong), place + word + r".* \(" + advice)
 
     def test_recursion_names_its_functions(self):
-        for helpers, names in (("vec3 one(int n) { return n == 0 ? vec3(0) : one(n - 1); }\n", r"one\(\) calls one\(\)"),
-                               ("vec3 two(int n);\nvec3 one(int n) { return two(n); }\nvec3 two(int n) { return one(n - 1); }\n",
-                                r"(one\(\) calls two|two\(\) calls one)\(\)")):
+        for helpers, names in (
+            ("vec3 one(int n) { return n == 0 ? vec3(0) : one(n - 1); }\n", r"one\(\) calls one\(\)"),
+            (
+                "vec3 two(int n);\nvec3 one(int n) { return two(n); }\nvec3 two(int n) { return one(n - 1); }\n",
+                r"(one\(\) calls two|two\(\) calls one)\(\)",
+            ),
+        ):
             self.assert_shader_refused(helpers + GREY.replace("get_grey()", "one(3)"), names + ".* write a loop")
 
     def test_what_only_other_scenes_have_is_not_called_misspelt(self):
@@ -90,11 +101,18 @@ class ShaderFiles(ProgramTest):
         self.beside("large.glsl", HELPER + " " * (4 << 20))
         place, outside_words = r"path_trace\.glsl:2: .*", ".* is outside of the shader's folder"
         for name, before, after in (
-                ("/dev/zero", place, outside_words), (str(outside), place, outside_words), ("../outside.glsl", place, outside_words),
-                ("link", place, outside_words), ("link_to_a_folder/outside.glsl", place, outside_words),
-                ("folder/../../outside.glsl", place, outside_words), ("nothing", place + "cannot find .*", '"'),
-                ("a" * 5000, place + "cannot find .*", ""), ("pipe", "", ": not a regular file"), ("folder", "", ": not a regular file"),
-                ("large.glsl", "", ": the file has 4 MiB, the limit is 1 MiB")):
+            ("/dev/zero", place, outside_words),
+            (str(outside), place, outside_words),
+            ("../outside.glsl", place, outside_words),
+            ("link", place, outside_words),
+            ("link_to_a_folder/outside.glsl", place, outside_words),
+            ("folder/../../outside.glsl", place, outside_words),
+            ("nothing", place + "cannot find .*", '"'),
+            ("a" * 5000, place + "cannot find .*", ""),
+            ("pipe", "", ": not a regular file"),
+            ("folder", "", ": not a regular file"),
+            ("large.glsl", "", ": the file has 4 MiB, the limit is 1 MiB"),
+        ):
             self.assert_shader_refused(f'// one\n#include "{name}"\n{GREY}', before + re.escape(name[:40]) + after)
 
     def test_includes_in_the_tree_may_be_links(self):
@@ -105,21 +123,34 @@ class ShaderFiles(ProgramTest):
     def test_paths_that_no_line_directive_can_hold(self):
         for name in ('a "b"', "a\\b"):
             shader = self.write(Path(name) / "path_trace.glsl", GREY)
-            self.assert_refused([*self.arguments[:-1], f"--shader=path_trace.glsl={shader}", "--output=no.exr"],
-                                re.escape(name), 'must not contain " or')
+            self.assert_refused(
+                [*self.arguments[:-1], f"--shader=path_trace.glsl={shader}", "--output=no.exr"],
+                re.escape(name),
+                'must not contain " or',
+            )
 
     def test_a_name_or_a_file_that_is_not_there(self):
-        for given, words in (("path_trace.glsl", 'no file ""'), ("path_trace.glsl=nothing.glsl", 'no file "nothing.glsl"'),
-                             ("path_trace.glsl=mine", 'no file "mine"')):
+        for given, words in (
+            ("path_trace.glsl", 'no file ""'),
+            ("path_trace.glsl=nothing.glsl", 'no file "nothing.glsl"'),
+            ("path_trace.glsl=mine", 'no file "mine"'),
+        ):
             self.assert_refused(["quad.json", f"--shader={given}", "--output=no.exr"], f"--shader {given}: there is {words}")
 
     def test_what_the_chapter_does_not_read_cannot_be_replaced(self):
         self.write("wrong.glsl", "not GLSL")
-        for name, place in (("nothing.glsl", "01_uniform_sampling/nothing.glsl"), ("lights.glsl", "01_uniform_sampling/lights.glsl"),
-                            ("chapter.json", "01_uniform_sampling/chapter.json"), ("03_nothing/path_trace.glsl",) * 2,
-                            ("14_many_lights/light_tree.glsl",) * 2, ("../shaders/world/lights.glsl",) * 2):
-            self.assert_refused(["quad.json", f"--shader={name}=wrong.glsl", "--output=no.exr"],
-                                f'the chapter does not read "{place}": write NAME=FILE, where NAME is one of brdf.glsl, camera.glsl, path_trace')
+        for name, place in (
+            ("nothing.glsl", "01_uniform_sampling/nothing.glsl"),
+            ("lights.glsl", "01_uniform_sampling/lights.glsl"),
+            ("chapter.json", "01_uniform_sampling/chapter.json"),
+            ("03_nothing/path_trace.glsl",) * 2,
+            ("14_many_lights/light_tree.glsl",) * 2,
+            ("../shaders/world/lights.glsl",) * 2,
+        ):
+            self.assert_refused(
+                ["quad.json", f"--shader={name}=wrong.glsl", "--output=no.exr"],
+                f'the chapter does not read "{place}": write NAME=FILE, where NAME is one of brdf.glsl, camera.glsl, path_trace',
+            )
 
     def test_another_shader_is_another_estimator(self):
         """Wherever its file is: what it rendered goes on with the same text, but not with the chapter's own shader."""
@@ -134,7 +165,9 @@ class ShaderFiles(ProgramTest):
         for name, grey in (("a", "0.25"), ("b", "0.5"), ("c", "0.25")):
             self.write(f"{name}.glsl", GREY.replace("get_grey()", f"vec3({grey})"))
             lines.append(" ".join([*self.arguments[:-1], f"--shader=path_trace.glsl={name}.glsl", f"--output={name}.exr\n"]))
-        ended = subprocess.run([CHAPTER_PROGRAM, "--batch"], input="".join(lines), cwd=self.folder, capture_output=True, text=True)
+        ended = subprocess.run(
+            [CHAPTER_PROGRAM, "--batch"], input="".join(lines), cwd=self.folder, capture_output=True, text=True
+        )
         self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertEqual([Exr(self.folder / f"{name}.exr").mean()[0] for name in "abc"], [0.25, 0.5, 0.25])
 

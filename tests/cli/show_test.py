@@ -39,8 +39,17 @@ class ShowTest(ProgramTest):
                     options.append(f"--shader={name}={file}")
                 pictures = []
                 for shaders in ([], options):
-                    self.render(scene, "--width=16", "--height=16", "--samples=2", "--backend=compute", "--output=picture.exr", *shaders,
-                                program=BINARIES / CHAPTERS[chapter], environment=UNOPTIMISED)
+                    self.render(
+                        scene,
+                        "--width=16",
+                        "--height=16",
+                        "--samples=2",
+                        "--backend=compute",
+                        "--output=picture.exr",
+                        *shaders,
+                        program=BINARIES / CHAPTERS[chapter],
+                        environment=UNOPTIMISED,
+                    )
                     pictures.append(Exr(self.folder / "picture.exr").pixels())
                 self.assertEqual(*pictures)
 

@@ -15,8 +15,10 @@ from project import CHAPTERS, UserError, course, read_json
 FEW = (3, "--runs", 5, "--samples", 4, "--backend", "compute")
 TECHNIQUE = "direct_light.glsl"
 # A right solution that moves a line to the estimator, and one with a factor too much: neither shows in path_trace.glsl.
-RIGHT = {"geometry * light.inverse_density": "geometry * get_inverse_density(light)",
-         "// Estimates the direct light": "float get_inverse_density(LightTriangle light) { return light.inverse_density; }\n// Estimates the direct light"}
+RIGHT = {
+    "geometry * light.inverse_density": "geometry * get_inverse_density(light)",
+    "// Estimates the direct light": "float get_inverse_density(LightTriangle light) { return light.inverse_density; }\n// Estimates the direct light",
+}
 WRONG = {"return get_brdf(s, omega) * geometry": "return 2.0 * get_brdf(s, omega) * geometry"}
 
 
@@ -44,7 +46,10 @@ class Submissions:
         """Name -> text of the shaders that a check reads instead of the chapter's own."""
         given = Submission(chapter, file).options
         self.assertEqual(given[::2], ["--shader"] * (len(given) // 2))
-        return {Path(place).name: Path(source).read_text(encoding="utf-8") for place, _, source in (text.partition("=") for text in given[1::2])}
+        return {
+            Path(place).name: Path(source).read_text(encoding="utf-8")
+            for place, _, source in (text.partition("=") for text in given[1::2])
+        }
 
 
 class GradedTogether(Submissions, ProgramTest):
@@ -59,7 +64,9 @@ class GradedTogether(Submissions, ProgramTest):
             (copy / "helper.glsl").write_text("// mine: helper.glsl\n", encoding="utf-8")
             for file in ("path_trace.glsl", read_json(copy / "chapter.json")["exercise"]["file"], "helper.glsl"):
                 for path in (copy / file, Path(os.path.relpath(copy / file))):
-                    self.assertEqual([name for name, text in self.tree(chapter, path).items() if f"// mine: {name}" not in text], [], path)
+                    self.assertEqual(
+                        [name for name, text in self.tree(chapter, path).items() if f"// mine: {name}" not in text], [], path
+                    )
 
     def test_without_chapter_json_the_names_tell(self):
         """As on platforms that collect files."""
@@ -86,13 +93,24 @@ class GradedTogether(Submissions, ProgramTest):
 
     def test_a_shader_that_a_chapter_includes_from_another_is_known_by_name_or_functions(self):
         """The others in its folder belong to that chapter. Chapter 13 has a file of the same name in its own folder, with one function more."""
-        for chapter, place in ((10, (7, "extend_path.glsl")), (8, (2, "sample_hemisphere.glsl")), (12, (10, "sample_loop.glsl")),
-                               (12, (11, "brdf.glsl")), (14, (13, "scatter.glsl")), (13, (13, "extend_path.glsl")), (14, (7, "weights.glsl"))):
+        for chapter, place in (
+            (10, (7, "extend_path.glsl")),
+            (8, (2, "sample_hemisphere.glsl")),
+            (12, (10, "sample_loop.glsl")),
+            (12, (11, "brdf.glsl")),
+            (14, (13, "scatter.glsl")),
+            (13, (13, "extend_path.glsl")),
+            (14, (7, "weights.glsl")),
+        ):
             original, alone = chapter_folder(place[0]) / place[1], Path(f"alone_as_{chapter}_{place[1]}")
             copy = self.copy_chapter(place[0], f"{place[0]}_as_{chapter}")
             text = original.read_text(encoding="utf-8")
-            mine = [original, copy / original.name, self.write(alone / original.name, text),
-                    self.write("anna.glsl", text.replace("add_light", "my_add"))]
+            mine = [
+                original,
+                copy / original.name,
+                self.write(alone / original.name, text),
+                self.write("anna.glsl", text.replace("add_light", "my_add")),
+            ]
             for file in mine:
                 with self.subTest(chapter=chapter, file=file):
                     given = Submission(chapter, file).options
@@ -106,10 +124,15 @@ class GradedTogether(Submissions, ProgramTest):
             self.assertIn(f"{CHAPTERS[7]}/extend_path.glsl={copy / 'extend_path.glsl'}", Submission(10, copy / file).options)
 
     def test_a_file_with_no_function_of_the_chapter_is_refused_with_the_names_that_are_known(self):
-        for file in (chapter_folder(6) / "dielectric.glsl", self.write("anna.glsl", "float half_of(float x) {\n    return 0.5 * x;\n}\n")):
+        for file in (
+            chapter_folder(6) / "dielectric.glsl",
+            self.write("anna.glsl", "float half_of(float x) {\n    return 0.5 * x;\n}\n"),
+        ):
             code, out, err = self.run_tool("check", 3, file)
             self.assertEqual((code, out), (2, ""))
-            self.assertRegex(err, rf"\Aerror: .*{file.name}: defines no function of chapter 3's shaders.*path_trace.glsl, {TECHNIQUE}\n\Z")
+            self.assertRegex(
+                err, rf"\Aerror: .*{file.name}: defines no function of chapter 3's shaders.*path_trace.glsl, {TECHNIQUE}\n\Z"
+            )
 
     def check(self, *arguments):
         code, out, err = self.run_tool("check", *arguments, "--json")
@@ -134,7 +157,9 @@ class GradedTogether(Submissions, ProgramTest):
         self.assertRegex(err, rf"\Aerror: [^\n]*(?<!/)21_mine/{TECHNIQUE}:{line}: [^\n]+\n\Z")
 
     def test_a_todo_beside_the_file_is_named(self):
-        copy = self.copy_chapter(3, "21_mine", {TECHNIQUE: {"return get_brdf(s, omega) * geometry": "return vec3(0.0);  // TODO"}})
+        copy = self.copy_chapter(
+            3, "21_mine", {TECHNIQUE: {"return get_brdf(s, omega) * geometry": "return vec3(0.0);  // TODO"}}
+        )
         result = self.check(*FEW, copy / "path_trace.glsl")
         self.assertEqual((result["unfinished_file"], result["diagnosis"]), (str(copy / TECHNIQUE), None))
 
@@ -151,10 +176,20 @@ class WholeClass(Submissions, ProgramTest):
             graded[picture.stem] = str(file.relative_to(self.folder / "all"))
             if "unreadable" in file.read_text(encoding="utf-8"):
                 raise UserError("does not compile")
-            return {"chapter": 3, "verdict": "correct", "unfinished_line": None, "diagnosis": None, "scenes": [], "picture": None, "file": str(file)}
+            return {
+                "chapter": 3,
+                "verdict": "correct",
+                "unfinished_line": None,
+                "diagnosis": None,
+                "scenes": [],
+                "picture": None,
+                "file": str(file),
+            }
 
         with mock.patch.object(command, "check", check):
-            code, out, err = self.run_here(command.main, *FEW, "--all", self.folder / "all", "--output", self.folder / "graded", *arguments)
+            code, out, err = self.run_here(
+                command.main, *FEW, "--all", self.folder / "all", "--output", self.folder / "graded", *arguments
+            )
         table = csv.DictReader((self.folder / "graded/results.csv").read_text(encoding="utf-8-sig").splitlines())
         return code, {row["submission"]: (row["verdict"], graded.get(row["submission"]), row["error"]) for row in table}, out
 
@@ -171,9 +206,17 @@ class WholeClass(Submissions, ProgramTest):
         self.submit("carl/mine.glsl")
         self.submit(f"carl/__MACOSX/._{TECHNIQUE}")
         code, rows, _ = self.grade()
-        self.assertEqual((code, rows), (0, {"anna": ("correct", f"anna/{TECHNIQUE}", ""),
-                                            "bob": ("correct", f"bob/lab/chapters/{CHAPTERS[3]}/{TECHNIQUE}", ""),
-                                            "carl": ("correct", "carl/mine.glsl", "")}))
+        self.assertEqual(
+            (code, rows),
+            (
+                0,
+                {
+                    "anna": ("correct", f"anna/{TECHNIQUE}", ""),
+                    "bob": ("correct", f"bob/lab/chapters/{CHAPTERS[3]}/{TECHNIQUE}", ""),
+                    "carl": ("correct", "carl/mine.glsl", ""),
+                },
+            ),
+        )
 
     def test_what_is_wrong_with_one_is_said_at_it_and_the_others_go_on(self):
         self.submit("anna.glsl")
@@ -185,11 +228,17 @@ class WholeClass(Submissions, ProgramTest):
         (self.folder / "all/emil.glsl").symlink_to("nowhere")
         code, rows, out = self.grade()
         self.assertEqual(code, 2)
-        self.assertEqual({name: row[0] for name, row in rows.items()},
-                         {"anna": "correct", "anna.glsl": "correct"} | dict.fromkeys(("bob", "carl", "dora", "emil"), "not graded"))
+        self.assertEqual(
+            {name: row[0] for name, row in rows.items()},
+            {"anna": "correct", "anna.glsl": "correct"} | dict.fromkeys(("bob", "carl", "dora", "emil"), "not graded"),
+        )
         self.assertEqual((rows["anna"][1], rows["anna.glsl"][1]), ("anna/direct_light.glsl", "anna.glsl"))
-        for name, words in (("bob", "2 shaders, such as first.glsl and second.glsl: .*direct_light.glsl"), ("carl", "no shader: direct_light.glsl is missing"),
-                            ("dora", "does not compile"), ("emil", "No such file")):
+        for name, words in (
+            ("bob", "2 shaders, such as first.glsl and second.glsl: .*direct_light.glsl"),
+            ("carl", "no shader: direct_light.glsl is missing"),
+            ("dora", "does not compile"),
+            ("emil", "No such file"),
+        ):
             self.assertRegex(rows[name][2], words)
         self.assertEqual(len(out.splitlines()), 6)
 

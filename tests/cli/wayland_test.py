@@ -39,8 +39,12 @@ class Wayland_all(ProgramTest):
         self.write("weston.ini", SETTINGS)
         runtime = tempfile.TemporaryDirectory()
         self.addCleanup(runtime.cleanup)
-        server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0", "2400x1800x24", "-nolisten", "tcp", "-noreset"],
-                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", "1", "-screen", "0", "2400x1800x24", "-nolisten", "tcp", "-noreset"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
         self.end_at_last(server)
         self.x11 = {"DISPLAY": f":{server.stdout.readline().strip()}", "WAYLAND_DISPLAY": None, "XDG_RUNTIME_DIR": runtime.name}
         self.wayland = self.x11 | {"DISPLAY": None, "WAYLAND_DISPLAY": "desktop"}
@@ -50,8 +54,11 @@ class Wayland_all(ProgramTest):
         self.addCleanup(process.terminate)
 
     def start_desktop(self, *arguments):
-        self.end_at_last(self.start(f"--config={self.folder / 'weston.ini'}", "--socket=desktop", *arguments, program="weston",
-                                    environment=self.x11))
+        self.end_at_last(
+            self.start(
+                f"--config={self.folder / 'weston.ini'}", "--socket=desktop", *arguments, program="weston", environment=self.x11
+            )
+        )
         self.wait_until("a desktop", lambda: os.path.exists(os.path.join(self.x11["XDG_RUNTIME_DIR"], "desktop")))
 
     def open_window(self, environment):
@@ -90,18 +97,36 @@ class Wayland_all(ProgramTest):
         subprocess.run(["xdotool", *map(str, words)], env=os.environ | variables, check=True)
 
     def drag(self, begin, end):
-        self.do("mousemove", *begin, "sleep", 0.3, "mousedown", 1, "sleep", 0.3, "mousemove", *(begin + end) // 2, "sleep", 0.3,
-                "mousemove", *end, "sleep", 0.3, "mouseup", 1)
+        self.do(
+            "mousemove",
+            *begin,
+            "sleep",
+            0.3,
+            "mousedown",
+            1,
+            "sleep",
+            0.3,
+            "mousemove",
+            *(begin + end) // 2,
+            "sleep",
+            0.3,
+            "mousemove",
+            *end,
+            "sleep",
+            0.3,
+            "mouseup",
+            1,
+        )
 
     def drag_window(self, corner, grip, way):
         """Drags it by a grip this far from the corner at this index of window(). A slow window does not follow all the way."""
-        before = self.window()[corner:corner + 2]
+        before = self.window()[corner : corner + 2]
 
         def drag_once_more():
-            begin = self.window()[corner:corner + 2] + grip
+            begin = self.window()[corner : corner + 2] + grip
             self.drag(begin, begin + way)
             self.do("mousemove", *self.window()[:2] + 100)  # off the desktop, so that only the window is on it
-            return ((self.window()[corner:corner + 2] - before) / way > 0.3).all()
+            return ((self.window()[corner : corner + 2] - before) / way > 0.3).all()
 
         self.wait_until(f"dragged by {way}", drag_once_more)
 

@@ -36,9 +36,15 @@ class Windows(ProgramTest):
         """Exit code and output of a run whose standard output is a terminal, as for someone typing the command."""
         ours, theirs = open_terminal()
         variables = {**os.environ, **environment}
-        process = subprocess.Popen([CHAPTER, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=theirs,
-                                   stderr=subprocess.PIPE, text=True,
-                                   env={name: value for name, value in variables.items() if value is not None})
+        process = subprocess.Popen(
+            [CHAPTER, *arguments],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=theirs,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={name: value for name, value in variables.items() if value is not None},
+        )
         os.close(theirs)
         _, err = process.communicate(timeout=300)
         os.close(ours)
@@ -91,8 +97,9 @@ class Windows(ProgramTest):
 
     @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
     def test_tests_leave_the_desktop_alone(self):
-        out = self.render("sh", "-c", "echo $DISPLAY $WAYLAND_DISPLAY", program=WITH_DISPLAY,
-                          environment={"WAYLAND_DISPLAY": "wayland-0"})
+        out = self.render(
+            "sh", "-c", "echo $DISPLAY $WAYLAND_DISPLAY", program=WITH_DISPLAY, environment={"WAYLAND_DISPLAY": "wayland-0"}
+        )
         self.assertRegex(out, r"\A:\d+\n\Z")
 
     @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")

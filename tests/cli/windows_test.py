@@ -24,8 +24,14 @@ PROGRAMS = PROJECT / "build/windows/programs/bin"
 PACKAGE = PROJECT / "output/path_tracing_lab-windows.zip"
 NEEDED = [windows_programs.COMPILER, "wine", "Xvfb"]
 # Programs refuse bad input in the same words on both systems.
-SAME_TESTS = ["command_line_test.Information", "command_line_test.WrongArguments", "command_line_test.MergeArguments",
-              "bad_input_test", "rendering_test.Views", "rendering_test.PictureFiles"]
+SAME_TESTS = [
+    "command_line_test.Information",
+    "command_line_test.WrongArguments",
+    "command_line_test.MergeArguments",
+    "bad_input_test",
+    "rendering_test.Views",
+    "rendering_test.PictureFiles",
+]
 BACKENDS = ["compute", "query", "pipeline"]
 SMALL = ["--width=64", "--height=48", "--samples=4"]
 wine = {}  # the programs' environment, once setUpModule() has prepared it
@@ -42,12 +48,24 @@ def setUpModule():
         command = folder / program.stem
         command.write_text(f'#!/bin/sh\nexec wine "{program}" "$@"\n', encoding="utf-8")
         command.chmod(0o755)
-    display = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
-                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    display = subprocess.Popen(
+        ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     unittest.addModuleCleanup(display.communicate)
     unittest.addModuleCleanup(display.terminate)
-    wine.update({"DISPLAY": f":{display.stdout.readline().strip()}", "LAB_BINARIES": str(folder), "LC_ALL": "C.UTF-8",
-                 "WINEPREFIX": str(folder / "prefix"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="})
+    wine.update(
+        {
+            "DISPLAY": f":{display.stdout.readline().strip()}",
+            "LAB_BINARIES": str(folder),
+            "LC_ALL": "C.UTF-8",
+            "WINEPREFIX": str(folder / "prefix"),
+            "WINEDEBUG": "-all",
+            "WINEDLLOVERRIDES": "mscoree,mshtml=",
+        }
+    )
     (folder / "prefix").mkdir()
     unittest.addModuleCleanup(subprocess.run, ["wineserver", "-k"], env=os.environ | wine)
     # Wine's own programs must not be started by one of ours: they would hold a pipe that a test reads to its end. The desktop
@@ -69,8 +87,9 @@ class WindowsPrograms_all(RenderTest):
         return self.folder / name / "path_tracing_lab-windows"
 
     def test_units(self):
-        result = subprocess.run(["wine", PROGRAMS / "unit_tests.exe", "--gtest_brief=1"], env=os.environ | wine,
-                                capture_output=True, text=True)
+        result = subprocess.run(
+            ["wine", PROGRAMS / "unit_tests.exe", "--gtest_brief=1"], env=os.environ | wine, capture_output=True, text=True
+        )
         self.assertEqual(result.returncode, 0, result.stdout)
 
     def test_pictures_are_those_of_linux_to_the_bit(self):
@@ -85,8 +104,13 @@ class WindowsPrograms_all(RenderTest):
                     self.assertGreater(min(windows.mean()), 0)
 
     def test_bad_input_gets_the_same_messages_and_exit_codes(self):
-        result = subprocess.run([sys.executable, "-B", "-m", "unittest", *SAME_TESTS], env=os.environ | wine,
-                                cwd=Path(__file__).parent, capture_output=True, text=True)
+        result = subprocess.run(
+            [sys.executable, "-B", "-m", "unittest", *SAME_TESTS],
+            env=os.environ | wine,
+            cwd=Path(__file__).parent,
+            capture_output=True,
+            text=True,
+        )
         self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_names_of_files_in_any_language(self):
@@ -100,8 +124,11 @@ class WindowsPrograms_all(RenderTest):
 
     def test_the_archive_works_in_a_folder_with_spaces_and_umlauts(self):
         folder = self.unpack("Übung 1")
-        for arguments, output in ((("run", "1", "cornell_box", *SMALL, "--headless"), "mean radiance"),
-                                  (("run",), "03_next_event_estimation"), (("help",), "check N")):
+        for arguments, output in (
+            (("run", "1", "cornell_box", *SMALL, "--headless"), "mean radiance"),
+            (("run",), "03_next_event_estimation"),
+            (("help",), "check N"),
+        ):
             code, out, err = self.run_program("cmd", "/c", "call", folder / "lab.cmd", *arguments, program="wine")
             self.assertEqual(code, 0, out + err)
             self.assertIn(output, out)
@@ -121,8 +148,13 @@ class WindowsPrograms_all(RenderTest):
         self.assert_refused(["01_uniform_sampling.exe"], "unpack the whole archive", program="wine")
 
     def test_a_machine_without_vulkan(self):
-        self.assert_refused(["quad.json"], "Vulkan is missing", "newest driver", code=2,
-                            environment={"WINEDLLOVERRIDES": wine["WINEDLLOVERRIDES"] + ";vulkan-1="})
+        self.assert_refused(
+            ["quad.json"],
+            "Vulkan is missing",
+            "newest driver",
+            code=2,
+            environment={"WINEDLLOVERRIDES": wine["WINEDLLOVERRIDES"] + ";vulkan-1="},
+        )
 
     def test_pictures_find_a_place(self):
         """If `output` cannot be a folder, they go to the user's."""
@@ -152,8 +184,9 @@ class WindowsPrograms_all(RenderTest):
 
     def test_points_are_those_of_linux(self):
         command = ["directions", "02_cosine_sampling", "4096", "1", "0", "2", ""]
-        windows = subprocess.run(["wine", PROGRAMS / "sample_points.exe", *command], env=os.environ | wine, check=True,
-                                 capture_output=True)
+        windows = subprocess.run(
+            ["wine", PROGRAMS / "sample_points.exe", *command], env=os.environ | wine, check=True, capture_output=True
+        )
         linux = subprocess.run([CHAPTER.with_name("sample_points"), *command], check=True, capture_output=True)
         self.assertEqual(windows.stdout, linux.stdout)
 
@@ -164,8 +197,9 @@ class WindowsPrograms_all(RenderTest):
         with zipfile.ZipFile(self.folder / "lab_3.zip") as archive:
             programs = {Path(name).stem for name in archive.namelist() if name.endswith(".exe")}
             shader = archive.read(f"lab_3/{chapter}/{exercise['file']}").decode()
-        self.assertEqual(programs, {"01_uniform_sampling", "02_cosine_sampling", "03_next_event_estimation", "merge_images",
-                                    "sample_points"})
+        self.assertEqual(
+            programs, {"01_uniform_sampling", "02_cosine_sampling", "03_next_event_estimation", "merge_images", "sample_points"}
+        )
         self.assertIn("TODO", shader)
 
     def test_the_window_follows_an_edited_shader(self):

@@ -57,13 +57,22 @@ def run_slice(name, seconds):
 def main():
     parser = Parser("./lab fuzz", __doc__)
     parser.add_argument("formats", nargs="*", metavar="FORMAT", help=f"{', '.join(FORMATS)} (default: all)")
-    parser.add_argument("--minutes", type=number(float, 0), default=6, help="CPU time for all formats together (default: %(default)s)")
+    parser.add_argument(
+        "--minutes", type=number(float, 0), default=6, help="CPU time for all formats together (default: %(default)s)"
+    )
     parser.add_argument("--record", type=Path, help="record of the run; what it says of other formats stays")
     arguments = parser.parse_args()
     if unknown := set(arguments.formats) - set(FORMATS):
         parser.error(f"there is no format {', '.join(sorted(unknown))}; there are {', '.join(FORMATS)}")
 
-    start = {"commit": commit(), "date": time.strftime("%Y-%m-%d"), "executions": 0, "cpu_seconds": 0, "peak_mib": 0, "defects": 0}
+    start = {
+        "commit": commit(),
+        "date": time.strftime("%Y-%m-%d"),
+        "executions": 0,
+        "cpu_seconds": 0,
+        "peak_mib": 0,
+        "defects": 0,
+    }
     totals = {name: dict(start) for name in arguments.formats or FORMATS}
     budget = 60 * arguments.minutes / len(totals)
     for name, total in totals.items():
@@ -79,8 +88,14 @@ def main():
 
     if arguments.record:
         previous = read_json(arguments.record)["formats"] if arguments.record.exists() else {}
-        write_json(arguments.record, {"engine": "libFuzzer with AddressSanitizer and UndefinedBehaviorSanitizer", "limits": LIMITS,
-                                      "formats": previous | totals})
+        write_json(
+            arguments.record,
+            {
+                "engine": "libFuzzer with AddressSanitizer and UndefinedBehaviorSanitizer",
+                "limits": LIMITS,
+                "formats": previous | totals,
+            },
+        )
     sys.exit(any(total["defects"] for total in totals.values()))
 
 

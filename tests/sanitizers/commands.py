@@ -17,9 +17,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 COMPLAINT = re.compile("Sanitizer|runtime error:")
-OPTIONS = {"ASAN_OPTIONS": "detect_leaks=0",  # the search for leaks itself crashes now and then, at a program's end
-           "UBSAN_OPTIONS": "print_stacktrace=1", "TSAN_OPTIONS": f"suppressions={ROOT}/tests/sanitizers/threads.txt",
-           "GALLIVM_PERF": "nopt"}  # Mesa's driver for CPUs takes longer to optimise a shader than to run it
+OPTIONS = {
+    "ASAN_OPTIONS": "detect_leaks=0",  # the search for leaks itself crashes now and then, at a program's end
+    "UBSAN_OPTIONS": "print_stacktrace=1",
+    "TSAN_OPTIONS": f"suppressions={ROOT}/tests/sanitizers/threads.txt",
+    "GALLIVM_PERF": "nopt",
+}  # Mesa's driver for CPUs takes longer to optimise a shader than to run it
 VIEWS = ("normals", "depth", "albedo", "emission", "focus", "texture-coordinates", "triangles", "instances", "bvh-steps")
 RENDERS = """--backend=auto cornell_box
     --backend=compute cornell_box --specular --background=1,1,1 --seed=7
@@ -34,7 +37,9 @@ RENDERS = """--backend=auto cornell_box
     --backend=compute cornell_box --resume=part.exr --samples=5
     --backend=native cornell_box --reference=part.exr --report=a.json --quiet
     --debug-pixel=0,0 torus
-    --debug-pixel=1599,1599 torus --width=1600 --height=1600""".split("\n")
+    --debug-pixel=1599,1599 torus --width=1600 --height=1600""".split(
+    "\n"
+)
 
 
 class Mix:
@@ -45,8 +50,16 @@ class Mix:
         """Runs a program with these lines as its standard input. Sends the signal `stop` once it has written stopped.exr."""
         stopped = Path(self.folder.name) / "stopped.exr"
         stopped.unlink(missing_ok=True)
-        with subprocess.Popen([self.programs / name, *arguments], cwd=self.folder.name, env=os.environ | OPTIONS, text=True,
-                              errors="replace", stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
+        with subprocess.Popen(
+            [self.programs / name, *arguments],
+            cwd=self.folder.name,
+            env=os.environ | OPTIONS,
+            text=True,
+            errors="replace",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        ) as process:
             if stop:
                 while not stopped.exists() and process.poll() is None:
                     time.sleep(0.01)
@@ -72,8 +85,16 @@ class Mix:
         for backend, views in (("compute", VIEWS), ("native", VIEWS[:-1])):  # which lacks the last one
             self.run(chapter, "--batch", lines="".join(f"{words} torus --view={view} --backend={backend}\n" for view in views))
             for number in (signal.SIGINT, signal.SIGHUP):
-                self.run(chapter, "--headless", "cornell_box", "--samples=4000000000", f"--backend={backend}",
-                         "--save-every=0.1", "--output=stopped.exr", stop=number)
+                self.run(
+                    chapter,
+                    "--headless",
+                    "cornell_box",
+                    "--samples=4000000000",
+                    f"--backend={backend}",
+                    "--save-every=0.1",
+                    "--output=stopped.exr",
+                    stop=number,
+                )
         self.run("merge_images", "part.exr", "part.exr", "-o", "twice.exr", codes=(1,))
         self.run(chapter, "--list-devices")
         for wrong in ("nowhere", "--samples=0", "--resume=/dev/null"):
@@ -81,7 +102,7 @@ class Mix:
         for kind, arguments in (("exr", ["cornell_box", "--resume=cut.exr"]), ("obj", ["cut.obj"]), ("scene", ["cut.json"])):
             for seed in sorted((ROOT / "tests/fuzz/seeds" / kind).iterdir()):
                 file = Path(self.folder.name) / f"cut{seed.suffix}"
-                file.write_bytes(seed.read_bytes()[:seed.stat().st_size * 2 // 3])
+                file.write_bytes(seed.read_bytes()[: seed.stat().st_size * 2 // 3])
                 self.run(chapter, "--headless", "--backend=native", *tiny, *arguments, codes=(0, 1))
 
 

@@ -21,7 +21,15 @@ SECTIONS = {  # of the navigation; missing pages are left out
     "Chapters": [f"chapters/{CHAPTERS[number]}/README.md" for number in course()],
     "The lecture": ["docs/slides.md", "docs/bugs.md"],
     "Explore": ["docs/browser.md", "docs/does_it_run_here.md", "docs/window.md", "docs/debugging.md", "docs/scenes.md"],
-    "How it works": ["docs/vulkan.md", "docs/backends.md", "common/README.md", "docs/extending.md", "docs/numerics.md", "docs/cluster.md", "CHANGELOG.md"],
+    "How it works": [
+        "docs/vulkan.md",
+        "docs/backends.md",
+        "common/README.md",
+        "docs/extending.md",
+        "docs/numerics.md",
+        "docs/cluster.md",
+        "CHANGELOG.md",
+    ],
     "Results": ["docs/results.md", "docs/measuring.md"],
     "For teachers": ["docs/teaching.md", "docs/grading/README.md", "docs/installing.md"],
 }
@@ -54,13 +62,20 @@ def write(folder, path, text):
 def whole_estimator(path):
     """What a chapter's page shows if it is unfolded; nothing for other pages."""
     number = next((number for number, name in CHAPTERS.items() if path == Path(f"chapters/{name}/README.md")), None)
-    return "" if number is None else ('\n<details markdown="1">\n<summary>The whole path tracer of this chapter</summary>\n\n'
-                                      f"```glsl\n{show.listing(number)}```\n\n</details>\n")
+    return (
+        ""
+        if number is None
+        else (
+            '\n<details markdown="1">\n<summary>The whole path tracer of this chapter</summary>\n\n'
+            f"```glsl\n{show.listing(number)}```\n\n</details>\n"
+        )
+    )
 
 
 def collect(folder, sections, is_teacher):
     """Writes the pages, the files they link to, their pictures, and what their live frames need, at the paths they have in the project. Returns the pages,
     the names of the sources on the site, and what is to be found by name: {address: (name, explanation)}."""
+
     def is_included(path):
         return (ROOT / path).is_file() and (is_teacher or "solutions" not in Path(path).parts)
 
@@ -104,7 +119,11 @@ def finish(site, sources, named):
     the theme (Debian 12) looks for the index in __search, later ones in __index."""
     index = read_json(site / SEARCH_INDEX)
     index["docs"] = list(search.entries(index["docs"], sources, named))
-    write(site, SEARCH_SCRIPT, f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index), transform: requireAllOfFew}};\n")
+    write(
+        site,
+        SEARCH_SCRIPT,
+        f"var __index = {json.dumps(index)}, __search = {{index: Promise.resolve(__index), transform: requireAllOfFew}};\n",
+    )
     for unused in (SEARCH_INDEX, "404.html", "sitemap.xml", "sitemap.xml.gz"):
         (site / unused).unlink(missing_ok=True)
 

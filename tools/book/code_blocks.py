@@ -14,8 +14,11 @@ import re
 from project import ROOT, UserError
 
 MARKER = "<!-- code:"
-BLOCK = re.compile(r"(?P<marker><!-- code: (?P<file>\S+) \| (?P<first>[^\n]+?) \| (?P<last>[^\n]+?) -->\n)"
-                   r"(?P<fence>```\w*\n)(?P<lines>.*?)(?P<end>```\n<!-- end of code -->)", re.DOTALL)
+BLOCK = re.compile(
+    r"(?P<marker><!-- code: (?P<file>\S+) \| (?P<first>[^\n]+?) \| (?P<last>[^\n]+?) -->\n)"
+    r"(?P<fence>```\w*\n)(?P<lines>.*?)(?P<end>```\n<!-- end of code -->)",
+    re.DOTALL,
+)
 
 
 def excerpt(text, first, last, name):
@@ -27,13 +30,14 @@ def excerpt(text, first, last, name):
     end = next((number for number in range(places[0], len(lines)) if last in lines[number]), None)
     if end is None:
         raise UserError(f"{name}: '{last}' is in no line from '{first}' on: name a phrase of the block's last line")
-    chosen = lines[places[0]:end + 1]
+    chosen = lines[places[0] : end + 1]
     indent = re.match(" *", chosen[0])[0]
     return "".join(line.removeprefix(indent) + "\n" for line in chosen)
 
 
 def fill(text, page):
     """The text of a page with its blocks updated from the sources. `page` is for messages."""
+
     def filled(block):
         marker, file, first, last, fence, _, end = block.groups()
         if not (ROOT / file).is_file():
@@ -41,8 +45,10 @@ def fill(text, page):
         return marker + fence + excerpt((ROOT / file).read_text(encoding="utf-8"), first, last, f"{page}: code of {file}") + end
 
     if len(BLOCK.findall(text)) != text.count(MARKER):
-        raise UserError(f"{page}: '{MARKER}' must be followed by FILE | first phrase | last phrase -->, a block in ``` and "
-                        "<!-- end of code -->, a line each")
+        raise UserError(
+            f"{page}: '{MARKER}' must be followed by FILE | first phrase | last phrase -->, a block in ``` and "
+            "<!-- end of code -->, a line each"
+        )
     return BLOCK.sub(filled, text)
 
 

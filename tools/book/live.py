@@ -22,10 +22,38 @@ from check import facts
 from check.diagnosis import FIRST_SEED
 from check.experiments import SIZE, experiments_of, known_sights, write_scene
 from check.grading import expected_file
-from project import CHAPTERS, ROOT, UserError, chapter_named, description, failure_text, original, program_file, read_json, run_program, scene_of
+from project import (
+    CHAPTERS,
+    ROOT,
+    UserError,
+    chapter_named,
+    description,
+    failure_text,
+    original,
+    program_file,
+    read_json,
+    run_program,
+    scene_of,
+)
 
 HERE = Path(__file__).parent / "live"
-SCRIPTS = ["preprocessor.js", "layout.js", "glsl.js", "verdict.js", "facts.js", "renderer.js", "editor.js", "plot.js", "controls.js", "picture.js", "check.js", "report.js", "page.js"]
+SCRIPTS = [
+    "preprocessor.js",
+    "layout.js",
+    "translation.js",
+    "glsl.js",
+    "verdict.js",
+    "facts.js",
+    "loading.js",
+    "renderer.js",
+    "editor.js",
+    "plot.js",
+    "controls.js",
+    "picture.js",
+    "check.js",
+    "report.js",
+    "page.js",
+]
 RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
 MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
 REPORT = "report"
@@ -34,7 +62,10 @@ HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halve
 SHADERS = {".glsl", ".h", ".frag"}
 REPLACEABLE = "shaders/replaceable.json"  # the files that a chapter may replace
 CONTINUED = "chapters/continued.json"  # {chapter: that which it continues}: written for pages
-IN_DRAWS = {"sample_loop.glsl": "single_sample.glsl", "stuck_loop.glsl": "stuck_loop_of_a_draw.glsl"}  # what a page has in place of the programs'
+IN_DRAWS = {
+    "sample_loop.glsl": "single_sample.glsl",
+    "stuck_loop.glsl": "stuck_loop_of_a_draw.glsl",
+}  # what a page has in place of the programs'
 
 
 def frames_of(text, path):
@@ -54,8 +85,10 @@ def with_frames(text, path):
     def frame(marker):
         what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
         bug = f' data-bug="{marker[3]}" data-picture="{marker[1]}"' if marker[3] else ""
-        return (f'<div class="live" data-chapter="{what}" data-folder="{folder}"{bug}>'
-                f'<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>\n')
+        return (
+            f'<div class="live" data-chapter="{what}" data-folder="{folder}"{bug}>'
+            f"<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>\n"
+        )
 
     text, count = MARKER.subn(frame, text)
     scripts = "".join(f'<script src="{folder}{name}"></script>' for name in ["sources.js", *SCRIPTS])
@@ -66,10 +99,17 @@ def shaders():
     """The texts of all shaders that a browser may include: of the engine, the world and the chapters. Pages trace rays as
     `compute` does. Of those that observe paths, they have the view of
     surfaces. Comments are left out where no page shows the file."""
-    files = [ROOT / REPLACEABLE] + [file for room in ("shaders", "chapters") for file in sorted((ROOT / room).rglob("*"))
-             if file.suffix in SHADERS and (file.parent.name != "trace_ray" or file.stem in ("compute", "bvh"))]
-    texts = {file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8") for file in files
-             if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)}
+    files = [ROOT / REPLACEABLE] + [
+        file
+        for room in ("shaders", "chapters")
+        for file in sorted((ROOT / room).rglob("*"))
+        if file.suffix in SHADERS and (file.parent.name != "trace_ray" or file.stem in ("compute", "bvh"))
+    ]
+    texts = {
+        file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8")
+        for file in files
+        if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)
+    }
     for name, replacement in IN_DRAWS.items():
         texts[f"shaders/engine/{name}"] = texts.pop(f"shaders/engine/{replacement}")
     texts[CONTINUED] = literal({chapter: description(chapter).get("continues") for chapter in CHAPTERS.values()})
@@ -83,8 +123,10 @@ def without_comments(text):
 
 def pictures_of(chapter, scene):
     """The names of the references that a chapter's frame offers: those of the page's scene, the longest paths first, then its check's."""
-    names = sorted((file.stem for file in (ROOT / "assets/references").glob(f"{scene}_*.exr") if scene_of(file.stem) == scene),
-                   key=lambda name: -length_of(name))
+    names = sorted(
+        (file.stem for file in (ROOT / "assets/references").glob(f"{scene}_*.exr") if scene_of(file.stem) == scene),
+        key=lambda name: -length_of(name),
+    )
     if not names:
         raise UserError(f"chapters/{chapter}/README.md: live: {scene}: this scene has no reference")
     return list(dict.fromkeys(names + description(chapter)["check"]["references"]))
@@ -116,20 +158,27 @@ def dump(file, chapter, *scene_and_options):
     arrays, content = read_json(file.with_suffix(".json")), file.with_suffix(".bin").read_bytes()
 
     def numbers(entry, code):
-        return array(code, content[4 * entry["first"]:4 * (entry["first"] + entry["count"])])
+        return array(code, content[4 * entry["first"] : 4 * (entry["first"] + entry["count"])])
 
     (parameters,), options = arrays.pop("parameters"), arrays.pop("options")
     reference = [(entry, numbers(entry, "f")) for entry in arrays.pop("reference", [])]
-    return arrays | {"packed": packed(content[:4 * parameters["first"]])}, list(numbers(parameters, "I")), options, reference
+    return arrays | {"packed": packed(content[: 4 * parameters["first"]])}, list(numbers(parameters, "I")), options, reference
 
 
 def dumped(chapter, name, folder):
     """A picture's entry, and the scripts that it loads: {file name: text}."""
-    arrays, parameters, _, reference = dump(folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name))
+    arrays, parameters, _, reference = dump(
+        folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name)
+    )
     (told, mean), (_, variance) = reference
     (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
-    reference = {"width": told["width"], "height": told["height"], "samples": float(told["samples"]),
-                 "scales": [mean_scale, deviation_scale], "packed": packed(means + deviations)}
+    reference = {
+        "width": told["width"],
+        "height": told["height"],
+        "samples": float(told["samples"]),
+        "scales": [mean_scale, deviation_scale],
+        "packed": packed(means + deviations),
+    }
     scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
     entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": parameters}
     return entry, {key: script(key, value) for key, value in ((scene, arrays), (entry["reference"], reference))}
@@ -160,16 +209,41 @@ def experiments_of_page(chapter, folder):
         points, sights = [], known_sights(expected[name])
         for index, (point, sight) in enumerate(zip(experiment.points, sights)):
             file = write_scene(point.scene, folder, f"{chapter}_{name}_{index}")
-            arrays, parameters, options, _ = dump(folder / f"{chapter}_point", chapter, file, "--width", str(SIZE), "--height", str(SIZE),
-                                                  *point.options.split(), "--seed", str(FIRST_SEED + index))
+            arrays, parameters, options, _ = dump(
+                folder / f"{chapter}_point",
+                chapter,
+                file,
+                "--width",
+                str(SIZE),
+                "--height",
+                str(SIZE),
+                *point.options.split(),
+                "--seed",
+                str(FIRST_SEED + index),
+            )
             if arrays not in scenes:
                 scenes.append(arrays)
-            points.append({"at": point.at, "samples": point.samples, "channel": point.channel, "mean": sight.mean, "error": sight.error, "options": options,
-                           "scene": scenes.index(arrays), "parameters": parameters})
-        shown.append({"name": name, "subject": experiment.subject, "varies": experiment.varies, "when": experiment.when, "points": points})
+            points.append(
+                {
+                    "at": point.at,
+                    "samples": point.samples,
+                    "channel": point.channel,
+                    "mean": sight.mean,
+                    "error": sight.error,
+                    "options": options,
+                    "scene": scenes.index(arrays),
+                    "parameters": parameters,
+                }
+            )
+        shown.append(
+            {"name": name, "subject": experiment.subject, "varies": experiment.varies, "when": experiment.when, "points": points}
+        )
     # Scenes with the same features share a program.
-    stack = max((define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")),
-                key=lambda define: int(define.split()[1]), default="")
+    stack = max(
+        (define for arrays in scenes for define in arrays["defines"] if define.startswith("BVH_STACK_SIZE")),
+        key=lambda define: int(define.split()[1]),
+        default="",
+    )
     for arrays in scenes:
         arrays["defines"] = [stack if define.startswith("BVH_STACK_SIZE") else define for define in arrays["defines"]]
     return {"experiments": shown, "scenes": scenes, "rules": {name: getattr(facts, name) for name in RULES}}
@@ -178,7 +252,9 @@ def experiments_of_page(chapter, folder):
 def furnace(folder):
     """A closed room in which every path brings the same light, as chapter 2 weighs by the albedo, 0.5, alone: what is dark there has been lost between triangles."""
     chapter = CHAPTERS[2]
-    arrays, parameters, _, _ = dump(folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256")
+    arrays, parameters, _, _ = dump(
+        folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256"
+    )
     return {"chapter": chapter, "scene": arrays, "radiance": 2 - 0.5**6, "parameters": parameters}
 
 
@@ -194,7 +270,9 @@ def exercise_of(chapter, texts):
 def bugs_of(chapter):
     """What each bug of a chapter replaces in its shaders, in the order of ./lab bug; one with two names counts once. A student's tree has none."""
     file = ROOT / "chapters" / chapter / "mistakes.json"
-    pieces = [(record["find"], record["replace"]) for record in (read_json(file) if file.exists() else []) if "file" not in record]
+    pieces = [
+        (record["find"], record["replace"]) for record in (read_json(file) if file.exists() else []) if "file" not in record
+    ]
     return [{"find": find, "replace": replace} for find, replace in dict.fromkeys(pieces)]
 
 
@@ -204,7 +282,9 @@ def write(folder, frames):
     before = dict(pairwise(sorted(frames, reverse=True)))  # the pages' chapters may be compared with
     names = {chapter: pictures_of(chapter, scene) for chapter, scene in frames.items()}
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
-        wanted = {(each, name) for chapter in frames for name in names[chapter] for each in (chapter, before.get(chapter)) if each}
+        wanted = {
+            (each, name) for chapter in frames for name in names[chapter] for each in (chapter, before.get(chapter)) if each
+        }
         jobs = {pair: pool.submit(dumped, *pair, Path(temporary)) for pair in sorted(wanted)}
         experiments = {chapter: pool.submit(experiments_of_page, chapter, Path(temporary)) for chapter in frames}
         for chapter in frames:
@@ -220,16 +300,24 @@ def write(folder, frames):
                     if fits(files):
                         entry["before"] = {"chapter": before[chapter], "scene": other["scene"], "parameters": other["parameters"]}
                         scripts |= files
-            chapters[chapter] = {"title": told["title"], "strategies": told.get("strategies", []), "pictures": pictures,
-                                 "samples": told["check"]["samples"], "checked": told["check"]["references"],
-                                 "exercise": exercise_of(chapter, texts), "bugs": bugs_of(chapter)}
+            chapters[chapter] = {
+                "title": told["title"],
+                "strategies": told.get("strategies", []),
+                "pictures": pictures,
+                "samples": told["check"]["samples"],
+                "checked": told["check"]["references"],
+                "exercise": exercise_of(chapter, texts),
+                "bugs": bugs_of(chapter),
+            }
             scripts[f"experiments_{chapter}"] = script(f"experiments_{chapter}", experiments[chapter].result())
         if 2 in CHAPTERS:  # not in the tree of a student who begins
             scripts["furnace"] = script("furnace", furnace(Path(temporary)))
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
-    (folder / "sources.js").write_text(f"var live = {{data: {{}}}};\nlive.sources = {literal(texts)};\n"
-                                       f"live.chapters = {literal(chapters)};\n", encoding="utf-8")
+    (folder / "sources.js").write_text(
+        f"var live = {{data: {{}}}};\nlive.sources = {literal(texts)};\n" f"live.chapters = {literal(chapters)};\n",
+        encoding="utf-8",
+    )
     for name in [*SCRIPTS, "live.css"]:
         (folder / name).write_text(without_comments((HERE / name).read_text(encoding="utf-8")), encoding="utf-8")

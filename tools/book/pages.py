@@ -7,8 +7,18 @@ from book import live
 from project import ROOT
 
 PICTURES = {".jpg", ".png", ".svg", ".gif", ".webp"}
-LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".glsl": "glsl", ".comp": "glsl", ".rgen": "glsl", ".rchit": "glsl", ".rmiss": "glsl",
-             ".py": "python", ".json": "json", "": "bash"}
+LANGUAGES = {
+    ".h": "cpp",
+    ".cpp": "cpp",
+    ".glsl": "glsl",
+    ".comp": "glsl",
+    ".rgen": "glsl",
+    ".rchit": "glsl",
+    ".rmiss": "glsl",
+    ".py": "python",
+    ".json": "json",
+    "": "bash",
+}
 LARGEST_SOURCE = 100_000  # bytes; larger files are data
 CODE = r"```.*?```|`[^`\n]+`|(?<=\n\n) {4}[^\n]*"
 LINK = re.compile(rf"({CODE})|(?<!!)\[((?:`[^`\n]*`|[^\[\]`]|!\[[^\[\]]*\]\([^()]*\))*)\]\(([^()\s]+)\)", re.DOTALL)
@@ -95,7 +105,7 @@ def with_lists(text):
             width = 0
         elif width and indent >= 2:
             has_paragraphs |= not before.strip()
-            inner = line[min(width, indent):]
+            inner = line[min(width, indent) :]
             if ITEM.match(inner) and not is_code and before.strip() and not ITEM.match(before.strip()):
                 lines.append("")
             line = "    " + inner

@@ -9,8 +9,15 @@ from statistics import median
 
 MEDIAN_GOAL, LONGEST_GOAL = 17, 40  # words per sentence
 LABEL = 2  # a sentence of at most this many words is a label, such as "Fill in."
-NO_TEXT = [r"^( *)(```|~~~)(?s:.*?)^\1\2 *$", r"<!--(?s:.*?)-->", r"^ *\$\$(?s:.*?)\$\$ *$", r"^#.*$", r"^ *\|.*$",
-           r"^!\[.*?\]\(.*?\)$", r"(?<=\n\n)(?: {4}.*\n|\n(?= {4}))+"]
+NO_TEXT = [
+    r"^( *)(```|~~~)(?s:.*?)^\1\2 *$",
+    r"<!--(?s:.*?)-->",
+    r"^ *\$\$(?s:.*?)\$\$ *$",
+    r"^#.*$",
+    r"^ *\|.*$",
+    r"^!\[.*?\]\(.*?\)$",
+    r"(?<=\n\n)(?: {4}.*\n|\n(?= {4}))+",
+]
 ONE_WORD = [r"`[^`]+`", r"\$[^$\n]+\$"]
 
 
@@ -24,8 +31,11 @@ def sentences(text):
     text = re.sub(r"\*+|</?[a-z][^<>]*>", "", text)
     # A list item is a paragraph of its own.
     paragraphs = re.split(r"\n\s*\n|(?:\A|\n)\s*(?:[-+]|\d+\.)\s+", text)
-    found = [" ".join(sentence.split()) for paragraph in paragraphs
-             for sentence in re.split(r"(?<=[.!?])[\"”)]*\s+(?=[^a-z])", paragraph)]
+    found = [
+        " ".join(sentence.split())
+        for paragraph in paragraphs
+        for sentence in re.split(r"(?<=[.!?])[\"”)]*\s+(?=[^a-z])", paragraph)
+    ]
     return [sentence for sentence in found if count_words(sentence) > LABEL]
 
 

@@ -7,7 +7,8 @@ FRACTION = re.compile(r"\\frac *\{([^{}]*)\} *\{([^{}]*)\}")
 COMMAND = re.compile(r"\\([A-Za-z]+|.)")
 # What TeX writes differently than HTML names it, and functions, which keep their names. Other commands only change the look.
 SYMBOLS = {"cdot": "·", "cdots": "…", "dots": "…", "ldots": "…", "sqrt": "√", "varphi": "φ", "thinspace": " ", "qquad": " "} | {
-    name: name for name in ("bmod", "cos", "ln", "log", "max", "min", "sin", "tan")}
+    name: name for name in ("bmod", "cos", "ln", "log", "max", "min", "sin", "tan")
+}
 CHAPTER_BOOST = 4  # whoever looks for a term wants the chapter that explains it
 
 

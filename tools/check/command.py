@@ -41,19 +41,29 @@ def parse():
     parser.add_argument("--teacher", action="store_true", help="name the mistake instead of only asking")
     parser.add_argument("--details", action="store_true", help="print all scenes and experiments as well")
     add_device_options(parser)
-    parser.add_argument("--seed", type=number(int, 0, 400000), default=0,
-                        help="each chooses other random numbers; default: 0")
+    parser.add_argument("--seed", type=number(int, 0, 400000), default=0, help="each chooses other random numbers; default: 0")
     parser.add_argument("--runs", type=number(int, 2, MOST_RUNS), default=RUNS, help=f"of each scene; default: {RUNS}")
     parser.add_argument("--samples", type=number(int, 1), help="of each run; default: 8 to 32, as the chapter needs")
-    parser.add_argument("--time-limit", type=number(float, 0.1), default=30.0, metavar="SECONDS",
-                        help="for each run, after which it is ended, and ten times as much for a whole check; default: 30")
+    parser.add_argument(
+        "--time-limit",
+        type=number(float, 0.1),
+        default=30.0,
+        metavar="SECONDS",
+        help="for each run, after which it is ended, and ten times as much for a whole check; default: 30",
+    )
     parser.add_argument("--memory-limit", type=number(float, 0.1), metavar="GIGABYTES", help="for each run; default: none")
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--json", action="store_const", const="json", dest="form", help="print the result as JSON")
-    forms.add_argument("--gradescope", action="store_const", const="gradescope", dest="form",
-                       help="print results.json of a Gradescope autograder, with points for each scene")
-    forms.add_argument("--github", action="store_const", const="github", dest="form",
-                       help="print annotations for GitHub's actions as well")
+    forms.add_argument(
+        "--gradescope",
+        action="store_const",
+        const="gradescope",
+        dest="form",
+        help="print results.json of a Gradescope autograder, with points for each scene",
+    )
+    forms.add_argument(
+        "--github", action="store_const", const="github", dest="form", help="print annotations for GitHub's actions as well"
+    )
     parser.add_argument("--points", type=number(float, 0), default=POINTS, help=f"for --gradescope; default: {POINTS}")
     options = parser.parse_intermixed_args()
     options.is_quiet, options.what = options.form in ("json", "gradescope"), ""
@@ -65,7 +75,9 @@ def refuse(options):
     if options.chapter not in SCENES:
         raise UserError(f"there is no chapter {options.chapter} to be checked: ./lab check N FILE grades a file as chapter N's")
     if options.samples and DESCRIPTIONS[options.chapter].get("low_discrepancy"):
-        raise UserError(f"--samples: in chapter {options.chapter} the error per sample depends on how many there are: leave it out")
+        raise UserError(
+            f"--samples: in chapter {options.chapter} the error per sample depends on how many there are: leave it out"
+        )
     if options.folder and (options.file or options.form):
         raise UserError("--all grades a folder into results.csv: leave out the file and the form of the output")
 
@@ -91,6 +103,7 @@ def check(options, submission, picture=None):
                 del mistake["name"]
     if picture or result["verdict"] != "correct":
         from check.pictures import draw  # imported late: Matplotlib takes longer to load than everything else
+
         name = f"check_{options.chapter}.png"
         try:
             path = draw(result, pictures, picture or ROOT / "output" / name)
@@ -110,7 +123,9 @@ def report(options, result):
         if result["verdict"] == "biased" and all(verdict == "correct" for _, verdict, _ in scenes):
             scenes.append(("experiments", "biased", result["diagnosis"]["facts"][0]["text"]))
         passed_anyway = DESCRIPTIONS.get(options.chapter, {}).get("check", {}).get("passed_by_placeholder", [])
-        print(json.dumps(as_gradescope(scenes, hints, options.points, passed_anyway, bool(result.get("unfinished_line"))), indent=1))
+        print(
+            json.dumps(as_gradescope(scenes, hints, options.points, passed_anyway, bool(result.get("unfinished_line"))), indent=1)
+        )
     elif "error" not in result:
         more = detail_lines(result) if options.details else [("more", "every scene and experiment: --details")]
         print(laid_out([*short_lines(result), *more], sys.stdout))
@@ -130,7 +145,9 @@ def main():
         if options.folder:
             sys.exit(grade_all(options, check))
         if not file.is_file():
-            raise UserError(f"{printable(file)}: " + ("a folder: name one of its files, or take --all" if file.is_dir() else "no such file"))
+            raise UserError(
+                f"{printable(file)}: " + ("a folder: name one of its files, or take --all" if file.is_dir() else "no such file")
+            )
         result = check(options, Submission(options.chapter, file))
     except SystemExit as end:  # by the parser
         if isinstance(end.code, str):

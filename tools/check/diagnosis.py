@@ -37,7 +37,9 @@ def look_at(chapter, points, settings, seed, batch, repeats, expected):
     seen = pictures(CHAPTERS[chapter], points, settings, seed, batch)
     if repeats > 1:
         wrong = [index for index, reading in enumerate(readings(points, map(together, seen), expected)) if not reading.is_right]
-        more = pictures(CHAPTERS[chapter], [points[index] for index in wrong], settings, seed + len(points), batch, repeats=repeats - 1)
+        more = pictures(
+            CHAPTERS[chapter], [points[index] for index in wrong], settings, seed + len(points), batch, repeats=repeats - 1
+        )
         for index, sights in zip(wrong, more):
             seen[index] += sights
     return [together(sights) for sights in seen]
@@ -60,7 +62,9 @@ def observe(chapter, settings, expected, chosen=is_called_for, seed=None):
 
     def look(name):
         try:
-            return look_at(chapter, experiments[name].points, settings, seed, batch, repeats_of(chapter), known_sights(expected[name]))
+            return look_at(
+                chapter, experiments[name].points, settings, seed, batch, repeats_of(chapter), known_sights(expected[name])
+            )
         except UserError as error:  # for example an endless loop that only this scene triggers
             return error
 
@@ -86,21 +90,35 @@ def right_ones(facts):
     """What is right: subjects, or if a subject is only partly right, what it does not depend on."""
     not_right = {seen.experiment.subject for seen in facts.values() if not seen.is_surely_right}
     right = [seen.experiment for seen in facts.values() if seen.is_surely_right]
-    return list(dict.fromkeys(f"{each.subject}, whatever {each.varies}" if each.subject in not_right else each.subject for each in right))
+    return list(
+        dict.fromkeys(f"{each.subject}, whatever {each.varies}" if each.subject in not_right else each.subject for each in right)
+    )
 
 
 def noise_findings(facts, sights, expected):
     """Where a shader is noisier than the chapter's own, or traces more rays, or fewer: then its paths end elsewhere."""
     found = []
-    for kind, words, is_much in (("noise", "{:.2g} times the variance", lambda value, error: value - 1 > 4 * error + 0.2),
-                                 ("rays", "{:.2g} times the rays", lambda value, error: abs(value - 1) > 4 * error + 0.05)):
-        much = {name: [(point.at, value) for point, (value, error) in zip(facts[name].experiment.points, seen) if is_much(value, error)]
-                for name, seen in ratios_of(sights, expected)[kind].items()}
+    for kind, words, is_much in (
+        ("noise", "{:.2g} times the variance", lambda value, error: value - 1 > 4 * error + 0.2),
+        ("rays", "{:.2g} times the rays", lambda value, error: abs(value - 1) > 4 * error + 0.05),
+    ):
+        much = {
+            name: [
+                (point.at, value) for point, (value, error) in zip(facts[name].experiment.points, seen) if is_much(value, error)
+            ]
+            for name, seen in ratios_of(sights, expected)[kind].items()
+        }
         if much := {facts[name].experiment.subject: those for name, those in much.items() if those}:
             most = max((value for those in much.values() for _, value in those), key=lambda value: abs(value - 1))
-            found.append({"text": shortened(f"up to {words.format(most)} of the chapter's own shader", list(much)),
-                          "evidence": [f"{subject}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
-                                       for subject, those in much.items()]})
+            found.append(
+                {
+                    "text": shortened(f"up to {words.format(most)} of the chapter's own shader", list(much)),
+                    "evidence": [
+                        f"{subject}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
+                        for subject, those in much.items()
+                    ],
+                }
+            )
     return found
 
 
@@ -124,7 +142,9 @@ def next_step(submission, facts, sights, expected):
         scene = write_scene(point.scene, folder, name)
     except OSError:  # in a read-only checkout, for instance
         return None
-    copy = next((number for number, name in CHAPTERS.items() if submission.file.resolve().parent == ROOT / "chapters" / name), None)
+    copy = next(
+        (number for number, name in CHAPTERS.items() if submission.file.resolve().parent == ROOT / "chapters" / name), None
+    )
     where = "" if copy else ", with your shader in the chapter's folder"
     colour = ("red", "green", "blue")[point.channel] + " " if point.channel is not None else ""
     values = f"{sights[name][worst].mean:.3g} instead of {known_sights(expected[name])[worst].mean:.3g}"
@@ -140,22 +160,31 @@ def reason(facts, sights, known, is_correct):
     wrong = [name for name, seen in facts.items() if not seen.is_right]
     fitting = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
     names = fitting or (similar_to(facts, known["mistakes"]) if wrong else [])
-    return {"facts": told, "right": right_ones(facts), "wrong": wrong, "fits": bool(fitting),
-            "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
-            "is_noisy": noisy,
-            "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
-            "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()}}
+    return {
+        "facts": told,
+        "right": right_ones(facts),
+        "wrong": wrong,
+        "fits": bool(fitting),
+        "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
+        "is_noisy": noisy,
+        "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
+        "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()},
+    }
 
 
 def diagnose(submission, settings, is_correct=False):
     """What experiments show about a submission, see reason(). If its pictures are correct, only those run that can decide as well."""
     chapter, started = submission.chapter, time.monotonic()
     known = read_json(expected_file(chapter)) | {"mistakes": known_mistakes(chapter)}
-    facts, sights = observe(chapter, settings | {"shaders": submission.options}, known["experiments"], is_deciding if is_correct else is_called_for)
+    facts, sights = observe(
+        chapter, settings | {"shaders": submission.options}, known["experiments"], is_deciding if is_correct else is_called_for
+    )
     for seen in facts.values():
         seen.sentence = submission.in_words(seen.sentence)
     return reason(facts, sights, known, is_correct) | {
-        "next": next_step(submission, facts, sights, known["experiments"]), "seconds": round(time.monotonic() - started, 1)}
+        "next": next_step(submission, facts, sights, known["experiments"]),
+        "seconds": round(time.monotonic() - started, 1),
+    }
 
 
 def verdict_with(verdict, diagnosis):

@@ -25,6 +25,7 @@ BLOCKS = 16  # of pixels: their spread gives the error of a variance
 @dataclass
 class Point:
     """One scene of an experiment, and how it is rendered."""
+
     scene: dict
     at: str  # what distinguishes it, in words
     x: float = None  # the same as a number, if there is one
@@ -48,6 +49,7 @@ class Experiment:
 @dataclass
 class Sight:
     """What a shader shows at a point."""
+
     mean: float
     error: float  # standard error of the mean
     noise: float  # variance of a single sample
@@ -85,9 +87,17 @@ def experiments_of(chapter):
 
 
 def experiment(name, says, samples):
-    points = [Point(merged(says["scene"], point.get("scene", {})), point["at"], point.get("x"),
-                    " ".join(filter(None, [says.get("options"), point.get("options")])), point.get("samples", says.get("samples", samples)), point.get("channel"))
-              for point in says["points"]]
+    points = [
+        Point(
+            merged(says["scene"], point.get("scene", {})),
+            point["at"],
+            point.get("x"),
+            " ".join(filter(None, [says.get("options"), point.get("options")])),
+            point.get("samples", says.get("samples", samples)),
+            point.get("channel"),
+        )
+        for point in says["points"]
+    ]
     rest = {key: says[key] for key in ("quantity", "when", "decides", "is_of_noise") if key in says}
     return Experiment(name, says["subject"], says.get("varies", ""), points, **rest)
 
@@ -119,24 +129,33 @@ def plate(says):
 
 def box(says):
     """The six faces of a box, rotated about the z-axis by an angle in degrees."""
-    size, centre, angle = np.array(says["box"], float), np.array(says.get("centre", [0, 0, 0]), float), math.radians(says.get("turn", 0.0))
+    size, centre, angle = (
+        np.array(says["box"], float),
+        np.array(says.get("centre", [0, 0, 0]), float),
+        math.radians(says.get("turn", 0.0)),
+    )
     turn = np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
     faces = []
     for axis in range(3):
         for sign in (-1, 1):
             normal = sign * np.eye(3)[axis]
             tangent, other = basis(normal)
-            faces.append([centre + turn @ (size / 2 * (normal + x * tangent + y * other)) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            faces.append(
+                [centre + turn @ (size / 2 * (normal + x * tangent + y * other)) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            )
     return faces
 
 
 def ball(says, rows=8, columns=16):
     """The faces of a ball seen from inside."""
+
     def corner(row, column):
         theta, phi = math.pi * row / rows, 2 * math.pi * column / columns
         return says["ball"] * np.array([math.sin(theta) * math.cos(phi), math.cos(theta), math.sin(theta) * math.sin(phi)])
 
-    faces = [[corner(r, c), corner(r, c + 1), corner(r + 1, c + 1), corner(r + 1, c)] for r in range(rows) for c in range(columns)]
+    faces = [
+        [corner(r, c), corner(r, c + 1), corner(r + 1, c + 1), corner(r + 1, c)] for r in range(rows) for c in range(columns)
+    ]
     faces = [[p for i, p in enumerate(face) if not np.allclose(p, face[i - 1])] for face in faces]
     return [face[::-1] for face in faces]
 
@@ -157,7 +176,11 @@ def write_scene(scene, folder, name):
     for index, (key, says) in enumerate(scene.items()):
         if key in ("camera", "background", *OF_THE_SCENE):
             continue
-        materials += [f"newmtl m{index}", f"Kd {colour(0 if 'glass' in says else says.get('albedo', 0))}", f"Ke {colour(says.get('emits', 0))}"]
+        materials += [
+            f"newmtl m{index}",
+            f"Kd {colour(0 if 'glass' in says else says.get('albedo', 0))}",
+            f"Ke {colour(says.get('emits', 0))}",
+        ]
         if "glass" in says:
             materials += ["d 0", f"Ni {says['glass']}", f"Tf {colour(says.get('clear', 1))}"]
         if "glossy" in says:
@@ -183,10 +206,17 @@ def write_scene(scene, folder, name):
     if "density" in others.get("fog", {}):
         others["fog"] = others["fog"] | {"density": str(ROOT / "assets/volumes" / others["fog"]["density"])}
     file = folder / f"{name}.json"
-    file.write_text(json.dumps({
-        "description": "An experiment of ./lab check", "meshes": [{"file": f"{name}.obj"}], **others,
-        "camera": {"position": camera["from"], "target": camera["to"], "up": up, "vertical_fov": camera["fov"]},
-        "background": background if isinstance(background, dict) else {"radiance": [background] * 3}}))
+    file.write_text(
+        json.dumps(
+            {
+                "description": "An experiment of ./lab check",
+                "meshes": [{"file": f"{name}.obj"}],
+                **others,
+                "camera": {"position": camera["from"], "target": camera["to"], "up": up, "vertical_fov": camera["fov"]},
+                "background": background if isinstance(background, dict) else {"radiance": [background] * 3},
+            }
+        )
+    )
     return file
 
 
@@ -196,20 +226,33 @@ def look(image, report, samples, channel=None):
     pixels = (image.mean(axis=2) if channel is None else image[..., channel]).ravel()
     variance = float(pixels.var(ddof=1))
     spread = float(np.std([block.var(ddof=1) for block in np.array_split(pixels, BLOCKS)], ddof=1) / math.sqrt(BLOCKS))
-    return Sight(float(pixels.mean()), math.sqrt((variance + 2 * spread) / pixels.size), variance * samples, spread * samples,
-                 report["rows"][-1]["rays"] / samples / pixels.size, report["invalid_samples"])
+    return Sight(
+        float(pixels.mean()),
+        math.sqrt((variance + 2 * spread) / pixels.size),
+        variance * samples,
+        spread * samples,
+        report["rows"][-1]["rays"] / samples / pixels.size,
+        report["invalid_samples"],
+    )
 
 
 def together(sights):
     """What several pictures of a point show. Uses their spread if it exceeds that of the pixels, whose errors may be
     correlated."""
+
     def mean(key):
         return float(np.mean([getattr(sight, key) for sight in sights]))
 
     count = len(sights)
     spread = float(np.std([sight.mean for sight in sights], ddof=1)) if count > 1 else 0.0
-    return Sight(mean("mean"), max(mean("error"), spread) / math.sqrt(count), mean("noise"), mean("noise_error") / math.sqrt(count),
-                 mean("rays"), sum(sight.invalid for sight in sights))
+    return Sight(
+        mean("mean"),
+        max(mean("error"), spread) / math.sqrt(count),
+        mean("noise"),
+        mean("noise_error") / math.sqrt(count),
+        mean("rays"),
+        sum(sight.invalid for sight in sights),
+    )
 
 
 def pictures(program, points, settings, seed, batch, repeats=1):
@@ -223,9 +266,12 @@ def pictures(program, points, settings, seed, batch, repeats=1):
             case = new_case(scene, None, point.at, program, point.options.split()) | {"width": SIZE, "height": SIZE}
             seen = []
             for turn in range(repeats):
-                report = run_case(case, settings, ["--samples", point.samples, "--seed", seed + index * repeats + turn, "--output", picture],
-                                  batch.run)
+                report = run_case(
+                    case,
+                    settings,
+                    ["--samples", point.samples, "--seed", seed + index * repeats + turn, "--output", picture],
+                    batch.run,
+                )
                 seen.append(look(read_rgb(picture), report, point.samples, point.channel))
             sights.append(seen)
     return sights
-

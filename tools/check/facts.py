@@ -12,19 +12,49 @@ TOLERANCE = 0.01  # relative to what is expected
 CLOSE = 0.05  # what certainly differs by less is reported as right
 INTERVAL = 2.0  # standard errors on both sides of a reported number
 DARK = 1e-3  # relative to an experiment's brightest point: below this, the expected value counts as dark
-CONSTANTS = {"π²": math.pi**2, "2π": 2 * math.pi, "4": 4.0, "π": math.pi, "3": 3.0, "2": 2.0, "π/2": math.pi / 2, "3/2": 1.5,
-             "2/3": 2 / 3, "2/π": 2 / math.pi, "1/2": 0.5, "1/3": 1 / 3, "1/π": 1 / math.pi, "1/4": 0.25, "1/(2π)": 0.5 / math.pi,
-             "1/π²": math.pi**-2}
+CONSTANTS = {
+    "π²": math.pi**2,
+    "2π": 2 * math.pi,
+    "4": 4.0,
+    "π": math.pi,
+    "3": 3.0,
+    "2": 2.0,
+    "π/2": math.pi / 2,
+    "3/2": 1.5,
+    "2/3": 2 / 3,
+    "2/π": 2 / math.pi,
+    "1/2": 0.5,
+    "1/3": 1 / 3,
+    "1/π": 1 / math.pi,
+    "1/4": 0.25,
+    "1/(2π)": 0.5 / math.pi,
+    "1/π²": math.pi**-2,
+}
 FEW_PARTS = 0.03  # a named constant is reported only if the interval is narrower than this fraction of it
-POWERS = {-3: "the third power of 1 / {}", -2: "the square of 1 / {}", -1: "1 / {}", -0.5: "the root of 1 / {}", 0.5: "the root of {}",
-          1: "{}", 2: "the square of {}", 3: "the third power of {}"}
-FUNCTIONS = {"value": lambda x: x, "rest": lambda x: 1 - x, "per": math.exp, "cos": lambda x: math.cos(math.radians(x)), "sin": lambda x: math.sin(math.radians(x))}
+POWERS = {
+    -3: "the third power of 1 / {}",
+    -2: "the square of 1 / {}",
+    -1: "1 / {}",
+    -0.5: "the root of 1 / {}",
+    0.5: "the root of {}",
+    1: "{}",
+    2: "the square of {}",
+    3: "the third power of {}",
+}
+FUNCTIONS = {
+    "value": lambda x: x,
+    "rest": lambda x: 1 - x,
+    "per": math.exp,
+    "cos": lambda x: math.cos(math.radians(x)),
+    "sin": lambda x: math.sin(math.radians(x)),
+}
 
 
 @dataclass
 class Reading:
     """A point of an experiment: what a shader shows there, relative to the right value, or if that is zero, to the right value at
     the brightest point."""
+
     at: str
     value: float
     error: float
@@ -56,6 +86,7 @@ class Reading:
 @dataclass
 class Fact:
     """What an experiment has shown."""
+
     experiment: object
     readings: list  # empty if the shader cannot be rendered
     sentence: str = ""  # empty if all is right
@@ -102,11 +133,11 @@ def constant(value, error):
 
 def common_value(those):
     """The mean of readings that agree, with its error; otherwise None."""
-    weights = np.array([1 / (reading.error**2 + (0.004 * reading.value)**2 + 1e-9) for reading in those])
+    weights = np.array([1 / (reading.error**2 + (0.004 * reading.value) ** 2 + 1e-9) for reading in those])
     values = np.array([reading.value for reading in those])
     mean = float(weights @ values / weights.sum())
     agree = all(abs(reading.value - mean) <= 3 * reading.error + TOLERANCE * max(mean, 0.1) for reading in those)
-    return (mean, float(weights.sum()**-0.5)) if agree else None
+    return (mean, float(weights.sum() ** -0.5)) if agree else None
 
 
 def power_law(experiment, those):
@@ -117,20 +148,28 @@ def power_law(experiment, those):
     if len(those) < 3 or not experiment.quantity or values.min() <= 0:
         return None
     errors = np.array([reading.error / reading.value + TOLERANCE / 3 for reading in those])
-    arguments = {function: np.log([FUNCTIONS[function](points[reading.at]) for reading in those]) for function in experiment.quantity}
+    arguments = {
+        function: np.log([FUNCTIONS[function](points[reading.at]) for reading in those]) for function in experiment.quantity
+    }
     if "per" in arguments:
         powers = [(float(np.polyfit(arguments["per"], np.log(values), 1, w=1 / errors)[0]),)]
     else:  # simplest first
-        powers = sorted(product([0, *POWERS], repeat=len(arguments)), key=lambda those: (sum(map(bool, those)), sum(map(abs, those))))
+        powers = sorted(
+            product([0, *POWERS], repeat=len(arguments)), key=lambda those: (sum(map(bool, those)), sum(map(abs, those)))
+        )
     for those_powers in powers:
         expected = sum(power * x for power, x in zip(those_powers, arguments.values()))
         offsets = np.log(values) - expected
-        mean, error = float(np.average(offsets, weights=errors**-2)), float((errors**-2).sum()**-0.5)
+        mean, error = float(np.average(offsets, weights=errors**-2)), float((errors**-2).sum() ** -0.5)
         if np.ptp(expected) < 6 * errors.max() or np.any(np.abs(offsets - mean) > 3 * errors):
             continue
-        if sum(map(bool, those_powers)) > 1 and abs(mean) > TOLERANCE + 2 * error:  # two powers and a factor would fit almost anything
+        if (
+            sum(map(bool, those_powers)) > 1 and abs(mean) > TOLERANCE + 2 * error
+        ):  # two powers and a factor would fit almost anything
             continue
-        phrases = [POWERS[power].format(words) for power, words in zip(those_powers, experiment.quantity.values()) if power in POWERS]
+        phrases = [
+            POWERS[power].format(words) for power, words in zip(those_powers, experiment.quantity.values()) if power in POWERS
+        ]
         if "per" in arguments:
             phrases = [f"{number(math.exp(powers[0][0]), 0.01 * math.exp(powers[0][0]))} {experiment.quantity['per']}"]
         return math.exp(mean), math.exp(mean) * error, " times ".join(phrases)
@@ -150,18 +189,24 @@ def sentence(experiment, those):
     elif wrong:
         common, law = common_value(lit), power_law(experiment, lit)
         if common and len(wrong) == len(lit):
-            words.append(f"{number(*common)} times as bright as it should be{constant(*common) if len(lit) > 1 else ''}{whatever}")
+            words.append(
+                f"{number(*common)} times as bright as it should be{constant(*common) if len(lit) > 1 else ''}{whatever}"
+            )
         else:
             if law:
                 factor, error, phrase = law
                 is_per = "per" in experiment.quantity
                 once = f", and once by {number(factor, error)}" if is_per else f" times {number(factor, error)}"
-                words.append(f"wrong by a factor {'of' if is_per else 'that follows'} {phrase}{'' if abs(factor - 1) < 2 * error + TOLERANCE else once}")
+                words.append(
+                    f"wrong by a factor {'of' if is_per else 'that follows'} {phrase}{'' if abs(factor - 1) < 2 * error + TOLERANCE else once}"
+                )
             words.append(", ".join(map(in_words, wrong)).replace(" times", " times as bright as it should be", 1))
             right = [reading.at for reading in lit if reading.is_surely_right]
             words += [f"right: {', '.join(right)}"] if right else []
-    words += [f"light where none should be: {reading.at}: {number(reading.value, reading.error)} times that of the brightest place"
-              for reading in leaks]
+    words += [
+        f"light where none should be: {reading.at}: {number(reading.value, reading.error)} times that of the brightest place"
+        for reading in leaks
+    ]
     return f"{subject}: {'; '.join(words or ['what is counted of it is right'])}"
 
 

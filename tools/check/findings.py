@@ -18,6 +18,7 @@ BOUNCES = 4  # at most, of an experiment
 @dataclass
 class Finding:
     """A way of being wrong, and the facts that are."""
+
     way: str
     facts: list = field(default_factory=list)
     is_vague: bool = False  # too bright or too dark, and nothing else in common
@@ -54,7 +55,10 @@ def factor_of_bounces(facts):
         counts = {point.at: point.x for point in seen.experiment.points}
         those = [reading for reading in seen.readings if reading.value > 0]
         if "bounce" in seen.experiment.quantity.get("per", "") and len(those) == len(counts) and not common_value(those):
-            roots = [(reading.value**(1 / counts[reading.at]), reading.error / reading.value / counts[reading.at]) for reading in those]
+            roots = [
+                (reading.value ** (1 / counts[reading.at]), reading.error / reading.value / counts[reading.at])
+                for reading in those
+            ]
             factor, error = roots[0][0], roots[0][0] * roots[0][1]
             if all(abs(root / factor - 1) <= TOLERANCE + 3 * math.hypot(part, error / factor) for root, part in roots):
                 return factor, error
@@ -63,8 +67,10 @@ def factor_of_bounces(facts):
 
 def is_power(reading, factor, error):
     """Whether a reading is that of some bounces, each with this factor."""
-    return any(abs(reading.value - factor**k) <= 3 * math.hypot(reading.error, k * factor**(k - 1) * error) + TOLERANCE * factor**k
-               for k in range(1, BOUNCES + 1))
+    return any(
+        abs(reading.value - factor**k) <= 3 * math.hypot(reading.error, k * factor ** (k - 1) * error) + TOLERANCE * factor**k
+        for k in range(1, BOUNCES + 1)
+    )
 
 
 def own_way(seen, bounces):
@@ -101,7 +107,11 @@ def side(those):
     values = [reading.value for seen in those for reading in wrong_readings(seen)]
     if min(values) > 1:
         return f"too bright, up to {max(values):.2f} times"
-    return f"too dark, down to {min(values):.2f} times" if max(values) < 1 else f"{min(values):.2f} to {max(values):.2f} times as bright"
+    return (
+        f"too dark, down to {min(values):.2f} times"
+        if max(values) < 1
+        else f"{min(values):.2f} to {max(values):.2f} times as bright"
+    )
 
 
 def is_wrong_throughout(seen):
@@ -141,7 +151,10 @@ def findings(facts):
             add("light where none should be", seen)
     factors = [(common, those) for common, those in same_factors(others) if common and len(those) >= SHARE * len(wrong)]
     for common, those in factors:
-        add(f"{number(*common)} times as bright as it should be{constant(*common) if any(map(is_wrong_throughout, those)) else ''}", *those)
+        add(
+            f"{number(*common)} times as bright as it should be{constant(*common) if any(map(is_wrong_throughout, those)) else ''}",
+            *those,
+        )
     rest = [seen for seen in others if not any(seen is each for _, those in factors for each in those)]
     for is_bright in (True, False):
         those = [seen for seen in rest if any(reading.value > 1 for reading in wrong_readings(seen)) == is_bright]

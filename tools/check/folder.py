@@ -67,7 +67,16 @@ def sources_of(chapter):
 
 def digest(options, submission):
     """A digest of a submission and everything it is graded with: results with the same digest are kept."""
-    settings = [sources_of(options.chapter), options.chapter, options.seed, options.runs, options.samples, options.teacher, options.backend, options.device]
+    settings = [
+        sources_of(options.chapter),
+        options.chapter,
+        options.seed,
+        options.runs,
+        options.samples,
+        options.teacher,
+        options.backend,
+        options.device,
+    ]
     shaders = {printable(each.name): each.read_bytes().hex() for each in submission.files}
     return hashlib.sha256(json.dumps([settings, submission.file.name, shaders]).encode()).hexdigest()
 
@@ -83,13 +92,29 @@ def grade_one(options, check, name, path, folder, known):
         result = check(options, submission, folder / f"{name}.png")
         found = result["diagnosis"] or {"facts": [], "mistakes": [], "fits": False}
         fitting = found["mistakes"] if found["fits"] else []
-        row = {"verdict": headline(result)[0], "unfinished_line": result["unfinished_line"], "picture": f"{name}.png",
-               "headline": headline(result), "text": laid_out(short_lines(result)), "details": laid_out(detail_lines(result)),
-               "facts": " | ".join(fact["text"] for fact in found["facts"]), "mistakes": " ".join(each.get("name", "") for each in fitting),
-               "questions": " ".join(questions(result) if fitting else []), "causes": causes(options.chapter, result), "error": ""}
+        row = {
+            "verdict": headline(result)[0],
+            "unfinished_line": result["unfinished_line"],
+            "picture": f"{name}.png",
+            "headline": headline(result),
+            "text": laid_out(short_lines(result)),
+            "details": laid_out(detail_lines(result)),
+            "facts": " | ".join(fact["text"] for fact in found["facts"]),
+            "mistakes": " ".join(each.get("name", "") for each in fitting),
+            "questions": " ".join(questions(result) if fitting else []),
+            "causes": causes(options.chapter, result),
+            "error": "",
+        }
     except Exception as error:  # whatever it is, grading continues with the next submission
         text = printable(str(error))
-        row = {"verdict": "not graded", "headline": ("not graded", text), "error": text, "text": text, "details": "", "causes": []}
+        row = {
+            "verdict": "not graded",
+            "headline": ("not graded", text),
+            "error": text,
+            "text": text,
+            "details": "",
+            "causes": [],
+        }
     return {"submission": name, **row, "seconds": round(time.monotonic() - started, 1), "digest": key}
 
 
@@ -115,21 +140,28 @@ def causes(chapter, result):
 def teaching(chapter, mistake):
     """The first chapter whose shader can have this mistake."""
     knowledge = {number: known_mistakes(number) for number in course() if number < chapter}
-    return next((number for number, known in knowledge.items() if mistake["hint"] in {each["hint"] for each in known.values()}), chapter)
+    return next(
+        (number for number, known in knowledge.items() if mistake["hint"] in {each["hint"] for each in known.values()}), chapter
+    )
 
 
 def summary(rows):
     """What is wrong most often in a class, as lines, each with the first fact about one of these shaders."""
     counts = Counter(cause for row in rows for cause in row["causes"])
     facts = {cause: row["facts"].split(" | ")[0] for row in reversed(rows) for cause in row["causes"]}
-    return [f"{count} of {len(rows)}: {cause}{': ' if facts[cause] else ''}{facts[cause]}" for cause, count in counts.most_common(MOST_COMMON)]
+    return [
+        f"{count} of {len(rows)}: {cause}{': ' if facts[cause] else ''}{facts[cause]}"
+        for cause, count in counts.most_common(MOST_COMMON)
+    ]
 
 
 def write_page(options, rows, path):
     """A table of all submissions, and a section about each."""
     escaped = [{key: html.escape(row[key]) for key in ("submission", "verdict", "text", "details")} for row in rows]
-    lines = [f'<tr><td><a href="#{i}">{row["submission"]}</a></td><td>{row["verdict"]}</td><td>{html.escape(rows[i]["headline"][1])}</td></tr>\n'
-             for i, row in enumerate(escaped)]
+    lines = [
+        f'<tr><td><a href="#{i}">{row["submission"]}</a></td><td>{row["verdict"]}</td><td>{html.escape(rows[i]["headline"][1])}</td></tr>\n'
+        for i, row in enumerate(escaped)
+    ]
     body = f"<table>\n<tr><th>submission</th><th>verdict</th><th></th></tr>\n{''.join(lines)}</table>\n"
     if common := summary(rows):
         body += f"<h2>What is wrong most often</h2>\n<pre>{html.escape(chr(10).join(common))}</pre>\n"

@@ -19,7 +19,9 @@ from report.numbers import FALSE_ALARMS as FALSE_ALARMS_OF_REPORTS
 from report.numbers import Series, biases, mean_of, paired_ratio, ratio
 
 # Per chapter: samples of a run, and references that show what its shader can do.
-SCENES = {number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says}
+SCENES = {
+    number: (says["check"]["samples"], says["check"]["references"]) for number, says in DESCRIPTIONS.items() if "check" in says
+}
 # Roulette from the first bounce on and with a cap that matters, since otherwise both hardly show. With a lower cap few samples
 # would dominate a picture, since survivors of eight bounces have weight 1/cap^8, and no interval would hold.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
@@ -65,7 +67,7 @@ def reference_regions(file):
     deviation = np.sqrt(reference.variance).mean(axis=2, keepdims=True)
     # A tile that a few paths of all the runs reach has no spread where they miss it: differences there that are a small fraction
     # of the image's mean count as noise.
-    floor = (TILE_FLOOR * reference.mean.mean())**2
+    floor = (TILE_FLOOR * reference.mean.mean()) ** 2
     channels, tiles = regions(reference.variance)[:3], regions(deviation**2)[1:]
     variance = [v / (height * width) for v in channels] + [v / TILE**2 + floor for v in tiles]
     return {"mean": regions(reference.mean), "variance": variance, "freedom": reference.freedom}
@@ -79,8 +81,10 @@ def render(submission, settings, scenes=None, watch=lambda cases: None):
     samples, started = settings["samples"] or samples, time.monotonic()
     with tempfile.TemporaryDirectory() as folder, Batch() as batch:
         settings = settings | {"shaders": submission.options}
-        cases = [new_case(*pair, f"chapter {chapter}", CHAPTERS[chapter], OPTIONS[chapter])
-                 for pair in find_references(scenes or own_scenes)]
+        cases = [
+            new_case(*pair, f"chapter {chapter}", CHAPTERS[chapter], OPTIONS[chapter])
+            for pair in find_references(scenes or own_scenes)
+        ]
         for case in cases:
             case |= {"invalid_samples": 0, "picture": 0}
         # The last scene first: the first two are often the same, and renders that start together would compile its shader twice.
@@ -96,7 +100,12 @@ def render(submission, settings, scenes=None, watch=lambda cases: None):
                 if time.monotonic() - started > limit:
                     raise UserError(f"ended after {limit:g} s in all: on a slow machine allow more by --time-limit")
                 picture = Path(folder) / f"{run}_{i}.exr"
-                report = run_case(cases[i], settings, ["--samples", samples, "--seed", settings["first_seed"] + run, "--output", picture], batch.run)
+                report = run_case(
+                    cases[i],
+                    settings,
+                    ["--samples", samples, "--seed", settings["first_seed"] + run, "--output", picture],
+                    batch.run,
+                )
                 return report, read_rgb(picture)
             except BaseException:
                 has_failed.set()
@@ -124,14 +133,16 @@ def level(case):
     """What the technique costs: rel_mse of a single sample, for the seed of each run, and rays per sample."""
     rows = {run["seed"]: run["rows"][-1] for run in case["runs"]}
     samples = next(iter(rows.values()))["samples"]
-    return {"rel_mse": {str(seed): float(f"{row['rel_mse'] * samples:.4g}") for seed, row in rows.items()},
-            "rays": float(f"{mean_of(rows.values(), 'rays') / samples / case['width'] / case['height']:.4g}")}
+    return {
+        "rel_mse": {str(seed): float(f"{row['rel_mse'] * samples:.4g}") for seed, row in rows.items()},
+        "rays": float(f"{mean_of(rows.values(), 'rays') / samples / case['width'] / case['height']:.4g}"),
+    }
 
 
 def most_noise(recorded):
     """How many times the recorded error of the chapter's own shader is still acceptable. If the lesson is less noise, a shader
     without it may have less than TOO_MUCH."""
-    return min(TOO_MUCH, max(recorded["gain"]**LOST_PART, LITTLE)) if "gain" in recorded else TOO_MUCH
+    return min(TOO_MUCH, max(recorded["gain"] ** LOST_PART, LITTLE)) if "gain" in recorded else TOO_MUCH
 
 
 def grade(case, recorded, scenes, is_second_look=False):
@@ -157,24 +168,40 @@ def grade(case, recorded, scenes, is_second_look=False):
         verdict = "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
     tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tiles)]
-    return {"scene": case["scene"], "verdict": verdict, "invalid_samples": case["invalid_samples"], "image": image,
-            "tiles": tiles, "noise": noise, "most_noise": most_noise(recorded), "rays": rays}
+    return {
+        "scene": case["scene"],
+        "verdict": verdict,
+        "invalid_samples": case["invalid_samples"],
+        "image": image,
+        "tiles": tiles,
+        "noise": noise,
+        "most_noise": most_noise(recorded),
+        "rays": rays,
+    }
 
 
 def read_levels(chapter):
     """Scene -> level of the chapter's own shader."""
     if not expected_file(chapter).exists():
-        raise UserError(f"chapter {chapter} has a title of its own and is not measured yet: ./lab check N FILE grades a file as chapter N's, "
-                        "./lab notebook learn measures a new chapter")
+        raise UserError(
+            f"chapter {chapter} has a title of its own and is not measured yet: ./lab check N FILE grades a file as chapter N's, "
+            "./lab notebook learn measures a new chapter"
+        )
     return read_json(expected_file(chapter))["levels"]
 
 
 def early_bias(cases):
     """The largest difference from the reference that is certain after a few runs: the name of a scene and the relative
     difference, or None and the smallest difference that would be certain."""
-    tests = [(test, case["scene"]) for case in cases
-             for test in biases(case["runs"], reference_regions(ROOT / case["reference_file"]),
-                                len(cases) * 3 * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS)[:3]]
+    tests = [
+        (test, case["scene"])
+        for case in cases
+        for test in biases(
+            case["runs"],
+            reference_regions(ROOT / case["reference_file"]),
+            len(cases) * 3 * FALSE_ALARMS_OF_REPORTS / FALSE_ALARMS,
+        )[:3]
+    ]
     sure = [(test["value"], scene) for test, scene in tests if test["is_biased"]]
     if sure:
         value, scene = max(sure, key=lambda pair: abs(pair[0]))
@@ -190,11 +217,19 @@ def is_sure(results):
 def doubtful(results):
     """The scenes in which one bright path, or its absence, may have decided, if no picture is off as a whole: tiles are off, there is noise,
     or the mean is far outside of its interval, but not far enough to be sure."""
+
     def is_near(test):
         return test["half_width"] is not None and abs(test["value"]) > NEAR * test["half_width"]
 
-    return [] if is_sure(results) else [result["scene"] for result in results
-                                        if result["verdict"] in ("biased", "noisy") or any(map(is_near, result["image"]))]
+    return (
+        []
+        if is_sure(results)
+        else [
+            result["scene"]
+            for result in results
+            if result["verdict"] in ("biased", "noisy") or any(map(is_near, result["image"]))
+        ]
+    )
 
 
 def judge(submission, settings, levels=None, watch=lambda cases: None, ends_early=False):
@@ -219,6 +254,16 @@ def judge(submission, settings, levels=None, watch=lambda cases: None, ends_earl
         seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases, is_second_look=True))}
     cases, results = zip(*seen.values())
     verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
-    return {"chapter": submission.chapter, "file": submission.name, "verdict": verdict, "runs": min(len(case["runs"]) for case in cases),
-            "samples": settings["samples"] or SCENES[submission.chapter][0], "first_seed": first_seed, "false_alarms": FALSE_ALARMS,
-            "too_much": TOO_MUCH, "picture": None, "diagnosis": None, "scenes": list(results)}, [case["picture"] for case in cases]
+    return {
+        "chapter": submission.chapter,
+        "file": submission.name,
+        "verdict": verdict,
+        "runs": min(len(case["runs"]) for case in cases),
+        "samples": settings["samples"] or SCENES[submission.chapter][0],
+        "first_seed": first_seed,
+        "false_alarms": FALSE_ALARMS,
+        "too_much": TOO_MUCH,
+        "picture": None,
+        "diagnosis": None,
+        "scenes": list(results),
+    }, [case["picture"] for case in cases]

@@ -44,7 +44,9 @@ def noise_distance(entry, ratios):
     for kind, looseness in (("noise", NOISE_LOOSENESS), ("rays", RAYS_LOOSENESS)):
         for name, seen in ratios[kind].items():
             for (value, error), known in zip(seen, numbers(entry.get(kind, {}).get(name, "")) or [1.0] * len(seen)):
-                far = max(far, abs(math.log(max(value, 0.01) / max(known, 0.01))) / math.hypot(error / max(value, 0.01), looseness))
+                far = max(
+                    far, abs(math.log(max(value, 0.01) / max(known, 0.01))) / math.hypot(error / max(value, 0.01), looseness)
+                )
     return far
 
 
@@ -53,8 +55,12 @@ def ratios_of(sights, expected):
     found = {"noise": {}, "rays": {}}
     for name, seen in sights.items():
         pairs = list(zip(seen, known_sights(expected[name])))
-        found["noise"][name] = [(now.noise / own.noise, math.hypot(now.noise_error / own.noise, now.noise * own.noise_error / own.noise**2))
-                                if own.noise > 1e-6 * own.mean**2 and now.noise > 0 else (1.0, 1.0) for now, own in pairs]
+        found["noise"][name] = [
+            (now.noise / own.noise, math.hypot(now.noise_error / own.noise, now.noise * own.noise_error / own.noise**2))
+            if own.noise > 1e-6 * own.mean**2 and now.noise > 0
+            else (1.0, 1.0)
+            for now, own in pairs
+        ]
         found["rays"][name] = [(now.rays / own.rays, 0.01) for now, own in pairs]
     return found
 
@@ -64,11 +70,16 @@ def names_of(facts, sights, known, expected):
     nearest first; empty if none fits."""
     wrong = {name for name, seen in facts.items() if not seen.is_right}
     # A small difference is near to none, but a mistake that is right wherever the shader is wrong is another one.
-    far = {name: distance(entry["shows"], facts) for name, entry in known.items()
-           if "unseen" not in entry and (not wrong or wrong & set(entry["shows"]))}
+    far = {
+        name: distance(entry["shows"], facts)
+        for name, entry in known.items()
+        if "unseen" not in entry and (not wrong or wrong & set(entry["shows"]))
+    }
     if not wrong:
         ratios = ratios_of(sights, expected)
-        those = {name: known[name] for name in far if known[name].get("noise") or known[name].get("rays")}  # the rest shows elsewhere
+        those = {
+            name: known[name] for name in far if known[name].get("noise") or known[name].get("rays")
+        }  # the rest shows elsewhere
         far = {name: max(far[name], noise_distance(entry, ratios)) for name, entry in those.items()}
     ordered = sorted(far, key=far.get)
     if not ordered or far[ordered[0]] > FITS:
@@ -98,5 +109,9 @@ def similar_to(facts, known):
     with the same numbers. None unless it explains most of what is wrong and few points contradict it. Not the second one as well: of
     twenty in the notebook's record, two were right."""
     alike = {name: likeness(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
-    near = [name for name, (value, contradictions) in alike.items() if value >= LEAST_LIKENESS and contradictions <= MOST_CONTRADICTIONS]
+    near = [
+        name
+        for name, (value, contradictions) in alike.items()
+        if value >= LEAST_LIKENESS and contradictions <= MOST_CONTRADICTIONS
+    ]
     return [max(near, key=alike.get)] if near else []

@@ -28,10 +28,13 @@ class Submission:
     @cached_property
     def files(self):
         """The shaders that are graded as one, the file last. Those beside a file belong to it if their folder is this chapter, a copy of
-        it or a new one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone."""
+        it or a new one: it has a chapter.json, or the file has the name of one of this chapter's shaders. Any other file stands alone.
+        """
         file = self.file
         title = description(file.parent.resolve())["title"] if (file.parent / "chapter.json").exists() else None
-        others = {says["title"] for number, says in DESCRIPTIONS.items() if expected_file(number).exists()} - {DESCRIPTIONS[self.chapter]["title"]}
+        others = {says["title"] for number, says in DESCRIPTIONS.items() if expected_file(number).exists()} - {
+            DESCRIPTIONS[self.chapter]["title"]
+        }
         if title in others or not (title or self.estimator.with_name(file.name).exists()):
             return [file]
         return [*(other for other in sorted(file.parent.glob("*.glsl")) if other.is_file() and other.name != file.name), file]
@@ -54,8 +57,10 @@ class Submission:
         if "path_trace" in functions and count < 2:
             return estimator
         if not count:
-            raise UserError(f"{self.name}: defines no function of chapter {self.chapter}'s shaders; name it like the one that it replaces: "
-                            f"{', '.join(shader.name for shader in folder)}")
+            raise UserError(
+                f"{self.name}: defines no function of chapter {self.chapter}'s shaders; name it like the one that it replaces: "
+                f"{', '.join(shader.name for shader in folder)}"
+            )
         return shader
 
     def shader_named(self, file):
@@ -70,13 +75,21 @@ class Submission:
         places = own | {self.shader: self.file}
         # What the chapter neither has nor may bring is included by these files only, and found beside them.
         named = named_files(self.estimator.parent)
-        return [word for place, source in places.items() if place.exists() or place.name in named
-                for word in replacement(place, source)]
+        return [
+            word
+            for place, source in places.items()
+            if place.exists() or place.name in named
+            for word in replacement(place, source)
+        ]
 
     def first_todo(self):
         """The first line with a TODO, as (name of the file, number), or (None, None)."""
-        found = ((printable(relative(file)), number) for file in self.files
-                 for number, line in enumerate(text_of(file).splitlines(), 1) if "TODO" in line)
+        found = (
+            (printable(relative(file)), number)
+            for file in self.files
+            for number, line in enumerate(text_of(file).splitlines(), 1)
+            if "TODO" in line
+        )
         return next(found, (None, None))
 
     def in_words(self, text):

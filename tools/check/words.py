@@ -46,8 +46,10 @@ def scene_words(scene):
         words.append(f"a bias from {100 * least:.2g} % would have shown")
         if scene["noise"][0] is not None:
             limit = f", where {scene['most_noise']:.2f} is the limit" if scene["verdict"] == "noisy" else ""
-            words.append(f"{scene['noise'][0]:.2f} times the noise of the chapter's own shader (95 % interval "
-                         f"{scene['noise'][1]:.2f} to {scene['noise'][2]:.2f}{limit})")
+            words.append(
+                f"{scene['noise'][0]:.2f} times the noise of the chapter's own shader (95 % interval "
+                f"{scene['noise'][1]:.2f} to {scene['noise'][2]:.2f}{limit})"
+            )
         words.append(f"{scene['rays']:.2f} times its rays")
     return words
 
@@ -58,7 +60,9 @@ def worst_scene(result):
     if not scene:
         return "the pictures are right, but not what the experiments show"
     if result["verdict"] == "biased":
-        worst = max((test["value"] for test in [*scene["image"], *(tile for tile in scene["tiles"] if tile["is_biased"])]), key=abs)
+        worst = max(
+            (test["value"] for test in [*scene["image"], *(tile for tile in scene["tiles"] if tile["is_biased"])]), key=abs
+        )
         if not abs(worst) < 1e6:  # also if it is no number
             return f"{scene['scene']} has values that no light has: is a variable used before it is set?"
         if worst < -1:
@@ -85,7 +89,11 @@ def smallest_bias(scenes):
 def questions(result):
     """The questions that lead to what may be wrong, if few mistakes can cause it."""
     mistakes = (result["diagnosis"] or {"mistakes": []})["mistakes"] if result["verdict"] != "correct" else []
-    return [": ".join(filter(None, (mistake.get("name"), mistake["hint"]))) for mistake in mistakes] if len(mistakes) <= MOST_QUESTIONS else []
+    return (
+        [": ".join(filter(None, (mistake.get("name"), mistake["hint"]))) for mistake in mistakes]
+        if len(mistakes) <= MOST_QUESTIONS
+        else []
+    )
 
 
 def headline(result):
@@ -121,7 +129,9 @@ def hint_lines(result):
 
 def hints_of(result):
     """What a platform shows of a shader that is not correct: texts, the headline first."""
-    return [f"{head}: {text}" for head, text in ([headline(result), *hint_lines(result)] if result["verdict"] != "correct" else [])]
+    return [
+        f"{head}: {text}" for head, text in ([headline(result), *hint_lines(result)] if result["verdict"] != "correct" else [])
+    ]
 
 
 def detail_lines(result):

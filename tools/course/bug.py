@@ -20,7 +20,18 @@ from check.submission import replaced
 from check.words import percent
 from course.mistakes import bugs_of
 from lesson import diff
-from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, has_low_discrepancy, number, program_file, show_progress, text_of
+from project import (
+    CHAPTERS,
+    ROOT,
+    Parser,
+    UserError,
+    add_device_options,
+    has_low_discrepancy,
+    number,
+    program_file,
+    show_progress,
+    text_of,
+)
 from references.images import averaged, find_references, read_rgb, scene_file
 from report.measurement import new_case, run_case
 from report.numbers import batches, biases, last_rows, mean_of, runs_in_batches
@@ -68,7 +79,9 @@ def render(case, samples, options, shaders):
     with tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "picture.exr"
         for seed in range(1, runs + 1):
-            report = run_case(case, vars(options) | {"shaders": shaders}, ["--samples", samples // runs, "--seed", seed, "--output", picture])
+            report = run_case(
+                case, vars(options) | {"shaders": shaders}, ["--samples", samples // runs, "--seed", seed, "--output", picture]
+            )
             case["runs"].append({"seed": seed, "rows": report["rows"]})
             case["invalid_samples"] += report["invalid_samples"]
             pictures.append(read_rgb(picture))
@@ -78,8 +91,11 @@ def render(case, samples, options, shaders):
 def telling_scene(chapter, planted, options):
     """The scene of ./lab check whose picture the bug changes most, judged by the means of tiles with a single sample per
     pixel."""
+
     def change(scene):
-        right, wrong = (averaged(render(new_render(chapter, scene), 1, options, shaders), SCALE * TILE) for shaders in ([], planted))
+        right, wrong = (
+            averaged(render(new_render(chapter, scene), 1, options, shaders), SCALE * TILE) for shaders in ([], planted)
+        )
         return np.abs(wrong - right).mean() / right.mean()
 
     return max(SCENES[chapter][1], key=change)
@@ -97,11 +113,16 @@ def verdict(right, wrong):
     if wrong["invalid_samples"]:
         return f"broken: {wrong['invalid_samples']} samples infinite or not a number"
     tests = biases(runs_in_batches(wrong), wrong["reference"] or as_reference(right), len(COLOURS))
-    means = ", ".join(f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests))
+    means = ", ".join(
+        f"{colour} {percent(test['value'])} ± {100 * test['half_width']:.2g} %" for colour, test in zip(COLOURS, tests)
+    )
     means += "" if wrong["reference"] else " against the right picture, since the scene has no reference"
     if any(test["is_biased"] for test in tests):
         return f"biased: {means}"
-    for key, text in (("rel_mse", "noisy: {:.1f} times the error of the right picture"), ("rays", "expensive: {:.1f} times its rays")):
+    for key, text in (
+        ("rel_mse", "noisy: {:.1f} times the error of the right picture"),
+        ("rays", "expensive: {:.1f} times its rays"),
+    ):
         now, own = (mean_of(last_rows(case["runs"]), key) for case in (wrong, right))
         if (now or 0) > TOO_MUCH * (own or math.inf):  # a noise-free picture has no noise to compare with
             return f"{text.format(now / own)}, the mean agrees: {means}"
@@ -119,10 +140,15 @@ def show(bug, index, scene, planted, options):
     path = ROOT / f"output/bug_{bug.chapter}_{index}.png"
     path.parent.mkdir(exist_ok=True)
     from report.plots import right_and_wrong  # imported late: Matplotlib takes longer to load than everything else
+
     right_and_wrong(path, *images)
     taken = sum(row["samples"] for row in last_rows(cases[0]["runs"]))
-    for name, text in (("scene", f"{cases[0]['scene']}, {taken} samples per pixel"), ("verdict", verdict(*cases)),
-                       ("question", bug.question), ("picture", path.relative_to(ROOT))):
+    for name, text in (
+        ("scene", f"{cases[0]['scene']}, {taken} samples per pixel"),
+        ("verdict", verdict(*cases)),
+        ("question", bug.question),
+        ("picture", path.relative_to(ROOT)),
+    ):
         print(f"{name:10} {text}")
 
 
@@ -130,8 +156,17 @@ def open_window(bug, scene, planted, options):
     """Shows the chapter with the bug, until its window is closed."""
     case = new_render(bug.chapter, scene)
     length = ["--max-path-length", case["max_path_length"]] if case["reference"] else []
-    command = [program_file(case["program"]), ROOT / case["scene_file"], "--window", *planted, *length, *OPTIONS[bug.chapter], "--backend", options.backend,
-               *(["--device", options.device] if options.device else [])]
+    command = [
+        program_file(case["program"]),
+        ROOT / case["scene_file"],
+        "--window",
+        *planted,
+        *length,
+        *OPTIONS[bug.chapter],
+        "--backend",
+        options.backend,
+        *(["--device", options.device] if options.device else []),
+    ]
     result = subprocess.run(list(map(str, command)))
     if result.returncode != 0:
         raise UserError(f"the window of chapter {bug.chapter} ended with exit code {result.returncode}")
@@ -140,8 +175,18 @@ def open_window(bug, scene, planted, options):
 def sanitize(bug, planted, options):
     """Prints what the sanitizer finds first."""
     scene = bug.mistake.get("sanitizer", "").split() if not options.scene else []
-    command = [program_file(CHAPTERS[bug.chapter]), *planted, *(scene or [find_scene(options.scene or SCENES[bug.chapter][1][0])[0]]), "--headless", "--quiet", "--sanitize",
-               "--width=64", "--height=64", f"--samples={options.samples or 16}", *(["--device", options.device] if options.device else [])]
+    command = [
+        program_file(CHAPTERS[bug.chapter]),
+        *planted,
+        *(scene or [find_scene(options.scene or SCENES[bug.chapter][1][0])[0]]),
+        "--headless",
+        "--quiet",
+        "--sanitize",
+        "--width=64",
+        "--height=64",
+        f"--samples={options.samples or 16}",
+        *(["--device", options.device] if options.device else []),
+    ]
     result = subprocess.run(list(map(str, command)), stderr=subprocess.PIPE, encoding="utf-8")
     text = result.stderr.replace(planted[1].partition("=")[2], str(bug.file)).replace(f"{ROOT.as_posix()}/", "")
     print(f"{'sanitizer':10} {text.strip() or 'finds nothing'}")

@@ -15,14 +15,40 @@ from book.code_blocks import take_out
 from check.expected import known_mistakes
 from course.pages import clean_pages
 from package.make import pack
-from project import BINARIES, CHAPTERS, KNOWLEDGE, ROOT, Parser, UserError, description, number, run_to_end, show_progress, text_of, write_json
+from project import (
+    BINARIES,
+    CHAPTERS,
+    KNOWLEDGE,
+    ROOT,
+    Parser,
+    UserError,
+    description,
+    number,
+    run_to_end,
+    show_progress,
+    text_of,
+    write_json,
+)
 
 HERE = Path(__file__).parent
 FOLDERS = ["assets", "common", "docs", "shaders", "tools"]
 FILES = [".clang-format", "CMakeLists.txt", "CMakePresets.json", "Containerfile", "LICENSE", "lab"]
 # For teachers only: these contain or name solutions, or belong to the whole course.
-TEACHERS = ["docs/teaching.md", "docs/debugging.md", "docs/extending.md", "docs/numerics.md", "docs/measuring.md", "docs/bugs*", "docs/pictures/bug*",
-            "docs/grading", "chapters/*/mistakes.json", "chapters/*/solutions", "tools/course", "tools/docs", "tools/package"]
+TEACHERS = [
+    "docs/teaching.md",
+    "docs/debugging.md",
+    "docs/extending.md",
+    "docs/numerics.md",
+    "docs/measuring.md",
+    "docs/bugs*",
+    "docs/pictures/bug*",
+    "docs/grading",
+    "chapters/*/mistakes.json",
+    "chapters/*/solutions",
+    "tools/course",
+    "tools/docs",
+    "tools/package",
+]
 EXPECTED = {"correct": 0, "biased": 1}  # exit codes of ./lab check
 
 
@@ -56,7 +82,11 @@ def write_handout(chapter, folder):
     text, solution = take_out(text_of(shader), exercise)
     shader.write_text(text, encoding="utf-8")
     readme = (HERE / "readme.md").read_text(encoding="utf-8")
-    for name, value in (("NUMBER", str(chapter)), ("FOLDER", CHAPTERS[chapter]), ("SHADER", shader.relative_to(folder).as_posix())):
+    for name, value in (
+        ("NUMBER", str(chapter)),
+        ("FOLDER", CHAPTERS[chapter]),
+        ("SHADER", shader.relative_to(folder).as_posix()),
+    ):
         readme = readme.replace(name, value)
     (folder / "README.md").write_text(readme, encoding="utf-8")
     clean_pages(folder, solution)
@@ -67,8 +97,11 @@ def write_pages(chapter, folder):
     with tempfile.TemporaryDirectory() as temporary:
         tree = Path(temporary) / "lab"
         write_handout(chapter, tree)
-        run_to_end([sys.executable, "-B", tree / "tools", "book", "--output", folder.resolve()], f"chapter {chapter}: its pages",
-                   env=os.environ | {"LAB_BINARIES": str(BINARIES.resolve())})
+        run_to_end(
+            [sys.executable, "-B", tree / "tools", "book", "--output", folder.resolve()],
+            f"chapter {chapter}: its pages",
+            env=os.environ | {"LAB_BINARIES": str(BINARIES.resolve())},
+        )
 
 
 def verify(chapter, folder):
@@ -81,7 +114,9 @@ def verify(chapter, folder):
     run_to_end(["cmake", "-S", tree, "-B", tree / "build", "-G", "Ninja"], f"chapter {chapter}: CMake")
     environment = os.environ | {"LAB_BINARIES": str(BINARIES.resolve())}
     check = [sys.executable, "-B", tree / "tools", "check", chapter, *few(chapter)]
-    result = json.loads(run_to_end([*check, "--json"], f"chapter {chapter}: check of the TODO", EXPECTED["biased"], env=environment))
+    result = json.loads(
+        run_to_end([*check, "--json"], f"chapter {chapter}: check of the TODO", EXPECTED["biased"], env=environment)
+    )
     passed = [scene["scene"] for scene in result["scenes"] if scene["verdict"] != "biased"]
     if passed != description(CHAPTERS[chapter])["check"].get("passed_by_placeholder", []):
         raise UserError(f"chapter {chapter}: the scenes that the TODO passes are {passed}: write them into chapter.json")
@@ -93,7 +128,11 @@ def main():
     parser = Parser("./lab handout", __doc__)
     parser.add_argument("chapter", type=number(int, 1), nargs="?", metavar="N", help="the last chapter")
     parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="to be made; must not exist")
-    parser.add_argument("--pages", action="store_true", help="write only the tree's pages, in which its chapters render: a site that works from a disk")
+    parser.add_argument(
+        "--pages",
+        action="store_true",
+        help="write only the tree's pages, in which its chapters render: a site that works from a disk",
+    )
     parser.add_argument("--windows", action="store_true", help="write DIR.zip, with programs to unpack and run on Windows")
     parser.add_argument("--verify", action="store_true", help="write nothing, but try every chapter's handout, or that of N")
     options = parser.parse_intermixed_args()
@@ -108,7 +147,9 @@ def main():
             raise UserError(f"{result} exists already: choose another name")
         if options.pages:
             write_pages(options.chapter, options.folder)
-            print(f"{options.folder / 'index.html'}: what students download there is what ./lab check {options.chapter} FILE grades")
+            print(
+                f"{options.folder / 'index.html'}: what students download there is what ./lab check {options.chapter} FILE grades"
+            )
             return
         if options.windows:
             with tempfile.TemporaryDirectory() as folder:
@@ -116,7 +157,9 @@ def main():
                 pack("windows", result, Path(folder) / "lab")
             return
         write_handout(options.chapter, options.folder)
-        print(f"{options.folder}: chapters 1 to {options.chapter}; cd there, ./lab run {options.chapter} and ./lab check {options.chapter}")
+        print(
+            f"{options.folder}: chapters 1 to {options.chapter}; cd there, ./lab run {options.chapter} and ./lab check {options.chapter}"
+        )
         return
     chapters, started = [options.chapter] if options.chapter else known, time.monotonic()
     with tempfile.TemporaryDirectory() as folder:

@@ -24,6 +24,7 @@ class Stale(UserError):
 @dataclass
 class Bug:
     """A mistake in a chapter: its record, and one of the chapter's shaders containing it."""
+
     chapter: int
     mistake: dict
     file: Path

@@ -22,7 +22,7 @@ def hide_lines(block, secret):
         if line.strip() not in secret:
             lines.append(line)
         elif not lines[-1].endswith(TODO_LINE):
-            lines.append(line[:len(line) - len(line.lstrip())] + TODO_LINE)
+            lines.append(line[: len(line) - len(line.lstrip())] + TODO_LINE)
     return "\n".join(lines)
 
 
@@ -36,7 +36,7 @@ def end_before_secrets(text, secret):
     """A page without the numbered sections from the first one on whose code contains a secret."""
     sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
     kept = list(takewhile(lambda section: secret.isdisjoint(map(str.strip, section.splitlines())), sections))
-    others = [section for section in sections[len(kept):] if not re.match(r"## \d", section)]
+    others = [section for section in sections[len(kept) :] if not re.match(r"## \d", section)]
     return text if len(kept) == len(sections) else "".join([*kept, "The next steps are your exercise.\n\n", *others])
 
 
@@ -59,6 +59,7 @@ def clean_pages(folder, solution):
     first_steps = folder / "docs/first_steps.md"
     first_steps.write_text(end_before_secrets(first_steps.read_text(encoding="utf-8"), secret), encoding="utf-8")
     for page in folder.rglob("*.md"):
+
         def shown(link):
             text, target = link.groups()
             file = page.parent / target.split("#")[0]
@@ -69,8 +70,12 @@ def clean_pages(folder, solution):
             return source_of(target) if is_quotation else text
 
         text = page.read_text(encoding="utf-8")
-        text = BLOCK.sub(lambda block: f"{block['fence']}{block['lines']}```" if (folder / block["file"]).exists() else
-                         f"({source_of(block['file'])})", text)
+        text = BLOCK.sub(
+            lambda block: f"{block['fence']}{block['lines']}```"
+            if (folder / block["file"]).exists()
+            else f"({source_of(block['file'])})",
+            text,
+        )
         text = FENCED.sub(lambda block: hide_lines(block[0], secret), text)
         text = FOLDED.sub(lambda block: block[1] if TODO_LINE in block[0] else block[0], text)  # it is no solution any more
         text = LINK.sub(shown, text)

@@ -16,9 +16,14 @@ import sys
 from includes import named_files
 from project import CHAPTERS, ROOT, Parser, UserError, number, program_file
 
-SETTINGS = ["set breakpoint pending on", "set print thread-events off", "set debuginfod enabled off",
-            # Stepping does not enter the functions that implement GLSL's own.
-            "skip -gfi */glm/*", "skip -gfi */native/glsl.h"]
+SETTINGS = [
+    "set breakpoint pending on",
+    "set print thread-events off",
+    "set debuginfod enabled off",
+    # Stepping does not enter the functions that implement GLSL's own.
+    "skip -gfi */glm/*",
+    "skip -gfi */native/glsl.h",
+]
 PRINTERS = "tools/debug/printers.py"
 
 
@@ -26,8 +31,12 @@ def parse():
     arguments, _, debugger = (list(part) for part in partition(sys.argv[1:], "--"))
     parser = Parser("./lab debug", __doc__)
     parser.add_argument("chapter", type=number(int, 1), nargs="?", metavar="N", help="number of the chapter")
-    parser.add_argument("--pixel", metavar="X,Y", help="the pixel, counted from the upper left corner; default: the middle of 512 x 512")
-    parser.add_argument("--sample", type=number(int, 0, 2**32 - 1), default=0, metavar="I", help="index of the sample; default: 0")
+    parser.add_argument(
+        "--pixel", metavar="X,Y", help="the pixel, counted from the upper left corner; default: the middle of 512 x 512"
+    )
+    parser.add_argument(
+        "--sample", type=number(int, 0, 2**32 - 1), default=0, metavar="I", help="index of the sample; default: 0"
+    )
     parser.add_argument("--vscode", action="store_true", help="write the files for Visual Studio Code")
     options, chapter_options = parser.parse_known_args(arguments)
     return options, chapter_options, debugger
@@ -35,7 +44,7 @@ def parse():
 
 def partition(words, separator):
     i = words.index(separator) if separator in words else len(words)
-    return words[:i], words[i:i + 1], words[i + 1:]
+    return words[:i], words[i : i + 1], words[i + 1 :]
 
 
 def first_function(chapter):
@@ -56,18 +65,31 @@ def command_for(debugger, program, arguments, extra, function="path_trace"):
 def vscode_files():
     """The files in .vscode/ by their names."""
     chapters = list(CHAPTERS.values())
-    inputs = [{"id": "chapter", "type": "pickString", "description": "chapter", "options": chapters, "default": chapters[0]},
-              {"id": "scene", "type": "promptString", "description": "scene", "default": "cornell_box"},
-              {"id": "pixel", "type": "promptString", "description": "pixel X,Y", "default": "256,256"}]
-    setup = [{"text": f"-interpreter-exec console \"{line}\""} for line in [*SETTINGS, f"source ${{workspaceFolder}}/{PRINTERS}",
-                                                                            "break path_trace", "break extend_path"]]
-    launch = {"name": "Stop in the shader", "type": "cppdbg", "request": "launch", "MIMode": "gdb", "cwd": "${workspaceFolder}",
-              "program": "${workspaceFolder}/build/bin/${input:chapter}",
-              "args": ["${input:scene}", "--debug-pixel", "${input:pixel}"],
-              "setupCommands": setup, "preLaunchTask": "build the chapters"}
+    inputs = [
+        {"id": "chapter", "type": "pickString", "description": "chapter", "options": chapters, "default": chapters[0]},
+        {"id": "scene", "type": "promptString", "description": "scene", "default": "cornell_box"},
+        {"id": "pixel", "type": "promptString", "description": "pixel X,Y", "default": "256,256"},
+    ]
+    setup = [
+        {"text": f'-interpreter-exec console "{line}"'}
+        for line in [*SETTINGS, f"source ${{workspaceFolder}}/{PRINTERS}", "break path_trace", "break extend_path"]
+    ]
+    launch = {
+        "name": "Stop in the shader",
+        "type": "cppdbg",
+        "request": "launch",
+        "MIMode": "gdb",
+        "cwd": "${workspaceFolder}",
+        "program": "${workspaceFolder}/build/bin/${input:chapter}",
+        "args": ["${input:scene}", "--debug-pixel", "${input:pixel}"],
+        "setupCommands": setup,
+        "preLaunchTask": "build the chapters",
+    }
     task = {"label": "build the chapters", "type": "shell", "command": "./lab run", "problemMatcher": []}
-    return {"launch.json": {"version": "0.2.0", "inputs": inputs, "configurations": [launch]},
-            "tasks.json": {"version": "2.0.0", "tasks": [task]}}
+    return {
+        "launch.json": {"version": "0.2.0", "inputs": inputs, "configurations": [launch]},
+        "tasks.json": {"version": "2.0.0", "tasks": [task]},
+    }
 
 
 def write_vscode(folder):

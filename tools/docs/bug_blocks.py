@@ -6,8 +6,12 @@ from course.mistakes import bugs_of, records
 from project import CHAPTERS, UserError
 
 # Name of the mistake -> chapter and reference.
-GALLERY = {mistake["name"]: (chapter, mistake["gallery"]) for chapter, mistakes in records().items()
-           for mistake in mistakes if "gallery" in mistake}
+GALLERY = {
+    mistake["name"]: (chapter, mistake["gallery"])
+    for chapter, mistakes in records().items()
+    for mistake in mistakes
+    if "gallery" in mistake
+}
 
 
 def find_bug(name):
@@ -25,7 +29,9 @@ def bug_block(name):
     rows = [(mark, line) for mark, line, _ in changes(bug) if mark != " "]
     lines = textwrap.dedent("\n".join(line for _, line in rows)).split("\n")
     shown = "\n".join(f"{mark} {line}".rstrip() for (mark, _), line in zip(rows, lines))
-    return (f"![Right, wrong and their difference](pictures/bugs_{name}.jpg)\n\n"
-            f"`./lab bug {bug.chapter} {index} --scene {GALLERY[name][1]}` asks: *{bug.question}*\n\n"
-            f"<!-- live: {GALLERY[name][1]} by {CHAPTERS[bug.chapter][3:]} bug {index} -->\n\n<details><summary>Answer</summary>\n\n"
-            f"```diff\n{shown}\n```\n{bug.mistake['explanation']} `{caught_by(bug)[1]}` catches it.\n")
+    return (
+        f"![Right, wrong and their difference](pictures/bugs_{name}.jpg)\n\n"
+        f"`./lab bug {bug.chapter} {index} --scene {GALLERY[name][1]}` asks: *{bug.question}*\n\n"
+        f"<!-- live: {GALLERY[name][1]} by {CHAPTERS[bug.chapter][3:]} bug {index} -->\n\n<details><summary>Answer</summary>\n\n"
+        f"```diff\n{shown}\n```\n{bug.mistake['explanation']} `{caught_by(bug)[1]}` catches it.\n"
+    )

@@ -22,13 +22,19 @@ TONES = {"srgb": encode_srgb, "linear": lambda image: image, "relative": lambda 
 
 def labelled(render):
     """The label and pixels of a render's tile."""
-    facts = {"number": int(render.chapter[:2]), "scene": render.scene, "samples": render.report["rows"][-1]["samples"],
-             "mean": render.image.mean(), "largest": render.image.max()}
+    facts = {
+        "number": int(render.chapter[:2]),
+        "scene": render.scene,
+        "samples": render.report["rows"][-1]["samples"],
+        "mean": render.image.mean(),
+        "largest": render.image.max(),
+    }
     return render.label.format(**facts), TONES[render.tone](render.image)
 
 
 def sheet_of(name):
     """A figure NAME.jpg of labelled tiles in rows."""
+
     def draw(folder, renders):
         rows = {}
         for render in renders:
@@ -60,8 +66,13 @@ def path_lengths(folder, renders):
     factors = [1, 1, 2, 4, 4, 8, 16, 16, 32, 32]
     for name, tiles in (
         ("path_length_at_most", [(f"at most {k}", encode_srgb(radiance)) for k, radiance in enumerate(np.cumsum(exact, axis=0))]),
-        ("path_length_exactly", [(f"exactly {k}" + (f", × {factor}" if factor > 1 else ""), encode_srgb(factor * radiance))
-                                 for k, (radiance, factor) in enumerate(zip(exact, factors))]),
+        (
+            "path_length_exactly",
+            [
+                (f"exactly {k}" + (f", × {factor}" if factor > 1 else ""), encode_srgb(factor * radiance))
+                for k, (radiance, factor) in enumerate(zip(exact, factors))
+            ],
+        ),
     ):
         sheet(folder / f"{name}.jpg", [row for row in (tiles[:5], tiles[5:]) if row])
 
@@ -107,6 +118,7 @@ def convergence(folder, renders):
 # ---------------------------------------------------------------------------------------------- of points
 def on_any_ground(draw):
     """Draws a figure without a ground, so that it can be read on white and on black."""
+
     @functools.wraps(draw)
     def drawn(folder, renders):
         with pyplot.rc_context(STYLE | {"font.size": 10}):
@@ -157,7 +169,9 @@ def grid_and_random(folder, renders):
     for axis, k in zip(axes, (1, 2, 4, 8)):
         sizes = 2 ** np.arange(0, 17, 2)
         terms = integral.terms(sample.draw(playground, 2**20, 0, k))
-        axis.plot(sizes, mean_errors(terms, integral.value(k), sizes), "o-", color=COLOURS[0], markersize=4, label="random: N^(−1/2)")
+        axis.plot(
+            sizes, mean_errors(terms, integral.value(k), sizes), "o-", color=COLOURS[0], markersize=4, label="random: N^(−1/2)"
+        )
         n, corners, midpoints = zip(*sample.grid_rows(integral, k, 2**16))
         axis.plot(n, corners, "s-", color=COLOURS[4], markersize=4, label=f"grid of corners: N^(−1/{k})")
         axis.plot(n, midpoints, "D-", color=COLOURS[1], markersize=4, label=f"grid of midpoints: N^(−2/{k})")

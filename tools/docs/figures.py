@@ -57,8 +57,25 @@ class Render:
             unfinished = file.with_suffix(".unfinished.exr")
             own = ROOT / "chapters" / self.chapter / "path_trace.glsl"
             with replaced(own, self.shader) if self.shader else nullcontext([]) as shaders:
-                process = run_program([BINARIES / self.chapter, self.scene, *shaders, "--width", self.size, "--height", self.height or self.size, *options,
-                                       "--backend", "compute", "--quiet", "--output", unfinished, "--report", report])
+                process = run_program(
+                    [
+                        BINARIES / self.chapter,
+                        self.scene,
+                        *shaders,
+                        "--width",
+                        self.size,
+                        "--height",
+                        self.height or self.size,
+                        *options,
+                        "--backend",
+                        "compute",
+                        "--quiet",
+                        "--output",
+                        unfinished,
+                        "--report",
+                        report,
+                    ]
+                )
             if process.returncode != 0:
                 raise UserError(f"{self.name}: {failure_text(process)}")
             os.replace(unfinished, file)
@@ -66,7 +83,9 @@ class Render:
         return self
 
     def samples_for_rays(self, folder):
-        pilot = Render(f"{self.name}_pilot", self.chapter, self.scene, self.size, (*self.options, "--samples", 1), height=self.height)
+        pilot = Render(
+            f"{self.name}_pilot", self.chapter, self.scene, self.size, (*self.options, "--samples", 1), height=self.height
+        )
         rays = pilot.run(folder).report["rows"][-1]["rays"]
         return max(1, round(self.rays_per_pixel * self.size * (self.height or self.size) / rays))
 
@@ -81,14 +100,28 @@ def renders_of_tiles(folder, figure):
             chapter = names[names.index(folder) + tile.get("chapter", 0)]
             options = f"{figure.get('options', '')} {tile.get('options', '')}".split()
             own = {"label": tile["label"]} if "label" in tile else {}
-            renders.append(Render(f"tile_{row}_{column}", chapter, tile.get("scene") or figure["scene"], width, tuple(options),
-                                  height=height, row=row, **{**look, **own}))
+            renders.append(
+                Render(
+                    f"tile_{row}_{column}",
+                    chapter,
+                    tile.get("scene") or figure["scene"],
+                    width,
+                    tuple(options),
+                    height=height,
+                    row=row,
+                    **{**look, **own},
+                )
+            )
     return renders
 
 
 def renders_of_pictures(key, size, name_of):
     """A picture for each chapter whose chapter.json names its scene, with the same number of rays."""
-    return [Render(name_of(folder), folder, measure[key], size, (), RAYS_PER_PIXEL) for folder, measure in MEASURES.items() if key in measure]
+    return [
+        Render(name_of(folder), folder, measure[key], size, (), RAYS_PER_PIXEL)
+        for folder, measure in MEASURES.items()
+        if key in measure
+    ]
 
 
 def renders_of_bugs():
@@ -98,25 +131,55 @@ def renders_of_bugs():
         bug, _ = find_bug(name)
         case = new_render(chapter, scene)
         options = ("--samples", 4 * SCENES[chapter][0], "--max-path-length", case["max_path_length"], *OPTIONS[chapter])
-        renders += [Render(f"{name}_{which}", CHAPTERS[chapter], Path(case["scene_file"]).stem, case["width"], options,
-                           height=case["height"], shader=text) for which, text in (("right", ""), ("wrong", bug.text))]
+        renders += [
+            Render(
+                f"{name}_{which}",
+                CHAPTERS[chapter],
+                Path(case["scene_file"]).stem,
+                case["width"],
+                options,
+                height=case["height"],
+                shader=text,
+            )
+            for which, text in (("right", ""), ("wrong", bug.text))
+        ]
     return renders
 
 
 def renders_of_noise_and_bias():
     """The right shader and one with a mistake, each with few and with many samples."""
     bug, _ = find_bug("missing-cosine")
-    return [Render(f"{which}_{samples}", CHAPTERS[bug.chapter], "cornell_box", 224, ("--samples", samples, "--max-path-length", 6),
-                   shader=text, row=row, label=f"{which}, {{samples}} samples per pixel")
-            for row, (which, text) in enumerate((("right", ""), ("wrong", bug.text))) for samples in (16, 2048)]
+    return [
+        Render(
+            f"{which}_{samples}",
+            CHAPTERS[bug.chapter],
+            "cornell_box",
+            224,
+            ("--samples", samples, "--max-path-length", 6),
+            shader=text,
+            row=row,
+            label=f"{which}, {{samples}} samples per pixel",
+        )
+        for row, (which, text) in enumerate((("right", ""), ("wrong", bug.text)))
+        for samples in (16, 2048)
+    ]
 
 
 def renders_of_convergence():
     """Four runs of each chapter whose error differs in the Cornell box, to be averaged."""
     reference = ("--reference", "assets/references/cornell_box_6.exr", "--max-path-length", 6)
-    return [Render(f"run_{int(folder[:2])}_{seed}", folder, "cornell_box", 128,
-                   ("--samples", measure["convergence_samples"], "--seed", seed, *reference))
-            for folder, measure in MEASURES.items() if "convergence_samples" in measure for seed in range(1, 5)]
+    return [
+        Render(
+            f"run_{int(folder[:2])}_{seed}",
+            folder,
+            "cornell_box",
+            128,
+            ("--samples", measure["convergence_samples"], "--seed", seed, *reference),
+        )
+        for folder, measure in MEASURES.items()
+        if "convergence_samples" in measure
+        for seed in range(1, 5)
+    ]
 
 
 def renders_of_first_steps():
@@ -129,30 +192,48 @@ def renders_of_first_steps():
         shader = shaders[f"{step} broken" if what.endswith("broken") else str(step)]
         return Render(f"step_{step}{what}", chapter, scene, 256, options, shader=shader)
 
-    return [*(tile(step, samples=16) for step in (1, 2, 3)),
-            *(tile(3, what, 16, "torus", close) for what in ("_torus", "_torus_broken")), tile(4, samples=16),
-            *(tile(step, what) for step in (5, 6, 7) for what in ("", "_broken")),
-            tile(8, "_1_sample", 1), tile(8, "_16_samples", 16), tile(8, "_256_samples"), tile(8, "_broken", 16)]
+    return [
+        *(tile(step, samples=16) for step in (1, 2, 3)),
+        *(tile(3, what, 16, "torus", close) for what in ("_torus", "_torus_broken")),
+        tile(4, samples=16),
+        *(tile(step, what) for step in (5, 6, 7) for what in ("", "_broken")),
+        tile(8, "_1_sample", 1),
+        tile(8, "_16_samples", 16),
+        tile(8, "_256_samples"),
+        tile(8, "_broken", 16),
+    ]
 
 
 # Name -> (function that makes its renders, function of figure_plots that draws them).
-FIGURES = {
-    "chapters": (lambda: renders_of_pictures("picture", 320, str), figure_plots.chapters),
-    "thumbnails": (lambda: renders_of_pictures("thumbnail", 120, lambda folder: folder[:2]), figure_plots.thumbnails),
-    "bugs": (renders_of_bugs, figure_plots.bugs), "noise_and_bias": (renders_of_noise_and_bias, figure_plots.sheet_of("noise_and_bias")),
-    "convergence": (renders_of_convergence, figure_plots.convergence),
-    "first_steps": (renders_of_first_steps, figure_plots.first_steps),
-} | {name: (list, getattr(figure_plots, name)) for name in (
-    "sampler_points", "point_sets", "one_over_root_n", "grid_and_random", "random_numbers", "window")
-} | {name: (partial(renders_of_tiles, folder, figure),
-             getattr(figure_plots, figure["layout"]) if "layout" in figure else figure_plots.sheet_of(name))
-     for name, (folder, figure) in named("figures").items()}
+FIGURES = (
+    {
+        "chapters": (lambda: renders_of_pictures("picture", 320, str), figure_plots.chapters),
+        "thumbnails": (lambda: renders_of_pictures("thumbnail", 120, lambda folder: folder[:2]), figure_plots.thumbnails),
+        "bugs": (renders_of_bugs, figure_plots.bugs),
+        "noise_and_bias": (renders_of_noise_and_bias, figure_plots.sheet_of("noise_and_bias")),
+        "convergence": (renders_of_convergence, figure_plots.convergence),
+        "first_steps": (renders_of_first_steps, figure_plots.first_steps),
+    }
+    | {
+        name: (list, getattr(figure_plots, name))
+        for name in ("sampler_points", "point_sets", "one_over_root_n", "grid_and_random", "random_numbers", "window")
+    }
+    | {
+        name: (
+            partial(renders_of_tiles, folder, figure),
+            getattr(figure_plots, figure["layout"]) if "layout" in figure else figure_plots.sheet_of(name),
+        )
+        for name, (folder, figure) in named("figures").items()
+    }
+)
 ON_REQUEST = [name for name, (_, figure) in named("figures").items() if figure.get("takes_long")]
 
 
 def parse():
     parser = Parser("./lab figures", __doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}, but not {', '.join(ON_REQUEST)}")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"default: all of {', '.join(FIGURES)}, but not {', '.join(ON_REQUEST)}"
+    )
     parser.add_argument("--output", type=Path, default=PICTURES, metavar="FOLDER", help="default: docs/pictures")
     options = parser.parse_args()
     for name in options.names:

@@ -54,8 +54,11 @@ def upward():
     rooms = read_rooms()
     wrong = [text for (room, other), text in uses().items() if rooms.index(room) > rooms.index(other)]
     for path in sorted((ROOT / "chapters").glob("*/*.glsl")):
-        wrong += [f"{path.relative_to(ROOT)} includes {target.relative_to(ROOT)}" for target in included_files(path)
-                  if target.is_relative_to(ROOT / "chapters") and target.parent.name > path.parent.name]
+        wrong += [
+            f"{path.relative_to(ROOT)} includes {target.relative_to(ROOT)}"
+            for target in included_files(path)
+            if target.is_relative_to(ROOT / "chapters") and target.parent.name > path.parent.name
+        ]
     return wrong
 
 
@@ -67,6 +70,7 @@ def into_the_annexes():
 def into_the_notebook():
     """Sources outside the notebook that include or import something of it, and those of no test that name a path into it. The tools know
     one: project.KNOWLEDGE."""
+
     def modules(folder):
         return {path.stem for path in (ROOT / folder).rglob("*.py")} | {path.name for path in (ROOT / folder).glob("*/")}
 
@@ -74,7 +78,9 @@ def into_the_notebook():
     for folder in ("common", "shaders", "chapters", "tools", "tests"):
         for path in sorted(path for path in (ROOT / folder).rglob("*") if path.suffix in SUFFIXES):
             text = path.read_text(encoding="utf-8")
-            names = [name for name in INCLUDE.findall(text) if (ROOT / "notebook" / name).is_file()] + [name for name in IMPORT.findall(text) if name in own]
+            names = [name for name in INCLUDE.findall(text) if (ROOT / "notebook" / name).is_file()] + [
+                name for name in IMPORT.findall(text) if name in own
+            ]
             if folder != "tests" and path != ROOT / "tools/project.py":
                 names += re.findall(r"""["'/](notebook/[^"']*)""", text)
             found += [f"{path.relative_to(ROOT)} uses {name}" for name in names]
@@ -90,19 +96,30 @@ def picture():
 
     for i, room in enumerate(rooms):
         y, colour = top + CELL * i, COLOURS[room.split("/")[0]]
-        shapes.append(f'<path d="M{LEFT} {y + CELL} L{LEFT + CELL * len(rooms)} {y + CELL}" stroke="{GREY}" stroke-width="0.3" fill="none"/>')
+        shapes.append(
+            f'<path d="M{LEFT} {y + CELL} L{LEFT + CELL * len(rooms)} {y + CELL}" stroke="{GREY}" stroke-width="0.3" fill="none"/>'
+        )
         text(LEFT - 24, y + 12.5, f"{room}/", colour, "end")
         text(LEFT - 6, y + 12.5, str(i + 1), colour, "end")
         text(LEFT + CELL * i + CELL / 2, top - 6, str(i + 1), colour, "middle")
-        shapes.append(f'<rect x="{LEFT + CELL * i + 3}" y="{y + 3}" width="{CELL - 6}" height="{CELL - 6}" fill="{GREY}" fill-opacity="0.4"/>')
+        shapes.append(
+            f'<rect x="{LEFT + CELL * i + 3}" y="{y + 3}" width="{CELL - 6}" height="{CELL - 6}" fill="{GREY}" fill-opacity="0.4"/>'
+        )
     for room, other in found:
         x, y = (rooms.index(name) * CELL + CELL / 2 for name in (other, room))
         shapes.append(f'<circle cx="{LEFT + x}" cy="{top + y}" r="4.5" fill="{COLOURS[room.split("/")[0]]}"/>')
     height = top + CELL * len(rooms) + 6
-    return "\n".join([
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" font-family="sans-serif">',
-        "<title>Rooms and what they include</title>", "<desc>A dot says that the room of its row includes the room of its column. "
-        "All dots are on the right of the diagonal: no room includes one above it.</desc>", *shapes, "</svg>", ""])
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" font-family="sans-serif">',
+            "<title>Rooms and what they include</title>",
+            "<desc>A dot says that the room of its row includes the room of its column. "
+            "All dots are on the right of the diagonal: no room includes one above it.</desc>",
+            *shapes,
+            "</svg>",
+            "",
+        ]
+    )
 
 
 def main():

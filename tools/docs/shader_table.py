@@ -10,17 +10,34 @@ from project import CHAPTERS, ROOT, UserError, course, table
 
 INTERFACE = "shaders/interface.h"
 TOPICS = {  # heading: sources
-    "Rays": ["shaders/world/ray.glsl", "shaders/world/camera.glsl", "shaders/engine/trace_ray/compute.glsl", "shaders/engine/render_samples.glsl"],
+    "Rays": [
+        "shaders/world/ray.glsl",
+        "shaders/world/camera.glsl",
+        "shaders/engine/trace_ray/compute.glsl",
+        "shaders/engine/render_samples.glsl",
+    ],
     "The point that a ray hits": ["shaders/world/shading_data.glsl", "shaders/world/frame.glsl"],
     "Random numbers": ["shaders/world/random.glsl", "shaders/world/random_words.glsl"],
-    "Materials": ["shaders/world/scene.glsl", "shaders/world/brdf.glsl", "shaders/world/materials.glsl", "shaders/world/materials/phong.glsl"],
+    "Materials": [
+        "shaders/world/scene.glsl",
+        "shaders/world/brdf.glsl",
+        "shaders/world/materials.glsl",
+        "shaders/world/materials/phong.glsl",
+    ],
     "Lights and the background": ["shaders/world/lights.glsl", "shaders/world/background.glsl", "shaders/world/light_probe.glsl"],
     "Media": ["shaders/world/boundaries.glsl"],
     "Options and constants": ["shaders/world/constants.glsl", INTERFACE],
 }
 NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|#include[^\n]*", re.DOTALL)
-DECLARATIONS = [re.compile(pattern) for pattern in (  # with the groups code and name
-    r"(struct (\w+)) \{", r"(?:const \w+|SHARED_\w+|#define) (([A-Z]\w*))\b", r"(\w+ (\w+)\([^()]*\)) \{", r"layout.* buffer \w+ \{ (\w+ (\w+)\[\]);")]
+DECLARATIONS = [
+    re.compile(pattern)
+    for pattern in (  # with the groups code and name
+        r"(struct (\w+)) \{",
+        r"(?:const \w+|SHARED_\w+|#define) (([A-Z]\w*))\b",
+        r"(\w+ (\w+)\([^()]*\)) \{",
+        r"layout.* buffer \w+ \{ (\w+ (\w+)\[\]);",
+    )
+]
 ARRAY = re.compile(r"^layout.* buffer \w+ \{ (\w+) (\w+)\[\];", re.MULTILINE)  # its elements and its name
 MEMBER = re.compile(r"^ {4}(\w+ (\w+)(?:\[\w+\])?);", re.MULTILINE)  # code and name
 PARAMETERS = "RenderParameters"  # shaders read its members as parameters.NAME
@@ -28,6 +45,7 @@ PARAMETERS = "RenderParameters"  # shaders read its members as parameters.NAME
 
 class Item(NamedTuple):
     """What a source declares. `comment` is empty if it has none."""
+
     code: str
     name: str
     comment: str
@@ -61,14 +79,16 @@ def declared(path):
 def members(path, struct):
     lines = read(path).splitlines()
     first = lines.index(f"struct {struct} {{")
-    inner = lines[first + 1:lines.index("};", first)]
+    inner = lines[first + 1 : lines.index("};", first)]
     return [Item(*match.groups(), comment_of(inner, index)) for index, line in enumerate(inner) if (match := MEMBER.match(line))]
 
 
 def first_uses(shaders):
     """A function that returns the number of the first chapter that uses a name, or None. `shaders` is {number: files}."""
     texts = {number: NO_CODE.sub("", "\n".join(map(read, files))) for number, files in shaders.items()}
-    return lambda name: next((number for number, text in texts.items() if re.search(rf"(?:\b|(?=\.)){re.escape(name)}\b", text)), None)
+    return lambda name: next(
+        (number for number, text in texts.items() if re.search(rf"(?:\b|(?=\.)){re.escape(name)}\b", text)), None
+    )
 
 
 def row(item, number, path):
@@ -92,7 +112,10 @@ def rows_of(path, first_use, elements):
             yield from (row(member, first_use(member.code), path) for member in named if first_use(member.code))
         elif is_struct and number:
             uses = [(member, first_use(f".{member.name}")) for member in members(path, item.name)]
-            yield from (row(member._replace(code=member.code.replace(" ", f" {item.name}.")), use and max(use, number), path) for member, use in uses)
+            yield from (
+                row(member._replace(code=member.code.replace(" ", f" {item.name}.")), use and max(use, number), path)
+                for member, use in uses
+            )
 
 
 def section(heading, paths, rows):
@@ -104,13 +127,17 @@ def shared_between(shaders):
     """{source: the lines for it} of the chapters' files that other chapters get or include."""
     taken = {file for number, files in shaders.items() for file in shaders_of(number) if file not in files}
     paths = {file.relative_to(ROOT).as_posix(): number for number, files in shaders.items() for file in files if file in taken}
-    return {path: [row(item, number, path) for item in declared(path) if item.name != "path_trace"] for path, number in paths.items()}
+    return {
+        path: [row(item, number, path) for item in declared(path) if item.name != "path_trace"] for path, number in paths.items()
+    }
 
 
 def shader_tables():
     shaders = {number: sorted((ROOT / "chapters" / CHAPTERS[number]).glob("*.glsl")) for number in course()}
     first_use, elements = first_uses(shaders), dict(ARRAY.findall(read("shaders/world/scene.glsl")))
-    text = "".join(section(heading, paths, [line for path in paths for line in rows_of(path, first_use, elements)])
-                   for heading, paths in TOPICS.items())
+    text = "".join(
+        section(heading, paths, [line for path in paths for line in rows_of(path, first_use, elements)])
+        for heading, paths in TOPICS.items()
+    )
     shared = {path: rows for path, rows in shared_between(shaders).items() if rows}
     return text + section("What chapters share", shared, [line for rows in shared.values() for line in rows]) + "\n"

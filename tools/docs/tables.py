@@ -16,8 +16,12 @@ PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md")), *sorted(ROOT.glob("cha
 
 def filled(text, kind, table_named):
     """A page's text with the tables of this kind that table_named() gives."""
-    return re.sub(rf"(<!-- {kind}: ([^\n]+?) -->\n).*?(<!-- end of table -->)", lambda match: match[1] + table_named(match[2]) + match[3], text,
-                  flags=re.DOTALL)
+    return re.sub(
+        rf"(<!-- {kind}: ([^\n]+?) -->\n).*?(<!-- end of table -->)",
+        lambda match: match[1] + table_named(match[2]) + match[3],
+        text,
+        flags=re.DOTALL,
+    )
 
 
 def write_pages(pages, text_of, is_check, command):
@@ -41,7 +45,12 @@ def table_named(name):
 
 
 def write_all(is_check=False):
-    write_pages(PAGES, lambda page, text: fill(filled(text, "table", table_named), page.relative_to(ROOT)), is_check, "python3 tools tables")
+    write_pages(
+        PAGES,
+        lambda page, text: fill(filled(text, "table", table_named), page.relative_to(ROOT)),
+        is_check,
+        "python3 tools tables",
+    )
 
 
 def main():

@@ -13,7 +13,9 @@ from project import CHAPTERS, ROOT, Parser, original, text_of
 
 CONTEXT = 3  # unchanged lines around a change
 # Number of a chapter: that of the one to compare it with.
-BEFORE = {number: previous if original(number) == number else original(number) for previous, number in zip(CHAPTERS, list(CHAPTERS)[1:])}
+BEFORE = {
+    number: previous if original(number) == number else original(number) for previous, number in zip(CHAPTERS, list(CHAPTERS)[1:])
+}
 STYLES = {"-": "\033[31m", "+": "\033[32m", "@": "\033[36m", " ": ""}  # ANSI: red, green, cyan
 STRONG, RESET = "\033[7m", "\033[0m"
 ESTIMATOR = re.compile(r"^vec3 path_trace\(", re.MULTILINE)
@@ -21,7 +23,8 @@ ESTIMATOR = re.compile(r"^vec3 path_trace\(", re.MULTILINE)
 
 def shader_lines(file, named=None):
     """The lines of a shader, given by its path below the project's folder; none if there is no such file. If it includes its namesake, or
-    a file with the function path_trace(), the included lines follow, so that chapters are compared as if each were written in full."""
+    a file with the function path_trace(), the included lines follow, so that chapters are compared as if each were written in full.
+    """
     path, lines = (ROOT / file).resolve(), []
     named = named or named_files(path.parent)
     for line in text_of(path).splitlines() if path.is_file() else []:
@@ -38,7 +41,10 @@ def lesson(number):
     # A file with that function is part of the estimator.
     names = ["path_trace.glsl", *(path.name for path in sorted(folder.glob("*.glsl")) if not ESTIMATOR.search(text_of(path)))]
     named = named_files(before)
-    return [[path.relative_to(ROOT).as_posix() for path in (named.get(name, before / name), folder / name)] for name in dict.fromkeys(names)]
+    return [
+        [path.relative_to(ROOT).as_posix() for path in (named.get(name, before / name), folder / name)]
+        for name in dict.fromkeys(names)
+    ]
 
 
 def words_of(lines):
@@ -119,5 +125,7 @@ def main():
             total.update(counts)
             if word != "all":
                 show(files, rows)
-        print(f"Chapter {BEFORE[number]} to {number}: {total['code']} lines of code changed ({total['words']} words) "
-              f"and {total['comments']} of comments")
+        print(
+            f"Chapter {BEFORE[number]} to {number}: {total['code']} lines of code changed ({total['words']} words) "
+            f"and {total['comments']} of comments"
+        )

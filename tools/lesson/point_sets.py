@@ -22,9 +22,11 @@ def spectrum(points):
     """|Σ exp(-2πi f·u)|² / N for frequencies f from -FREQUENCIES to FREQUENCIES along each axis, averaged over the sets. It is 1
     for random points, and 0 at 0, which is left out. The variance of an estimate is the sum of its products with the
     integrand's spectrum, divided by N."""
-    waves = np.exp(-2j * np.pi * np.arange(-FREQUENCIES, FREQUENCIES + 1)[:, None, None, None] * points)  # frequency, pixel, index, axis
+    waves = np.exp(
+        -2j * np.pi * np.arange(-FREQUENCIES, FREQUENCIES + 1)[:, None, None, None] * points
+    )  # frequency, pixel, index, axis
     sums = np.einsum("apn,bpn->pba", waves[..., 0], waves[..., 1])
-    power = (abs(sums)**2).mean(axis=0) / points.shape[1]
+    power = (abs(sums) ** 2).mean(axis=0) / points.shape[1]
     power[FREQUENCIES, FREQUENCIES] = 0
     return power
 
@@ -54,8 +56,11 @@ def report(sets, integrals):
     lines = []
     for title, integral in integrals.items():
         table = errors(sets, integral)
-        lines += ["", f"Error of {title} from the first N samples of a pixel, root mean square over {PIXELS} pixels:",
-                  f"{'N':>9}" + "".join(f"{name:>12}" for name in table)]
+        lines += [
+            "",
+            f"Error of {title} from the first N samples of a pixel, root mean square over {PIXELS} pixels:",
+            f"{'N':>9}" + "".join(f"{name:>12}" for name in table),
+        ]
         lines += [f"{size:9d}" + "".join(f"{values[i]:12.6f}" for values in table.values()) for i, size in enumerate(SIZES)]
         lines.append(f"{'slope':>9}" + "".join(f"{slope(values):12.2f}" for values in table.values()))
     return lines

@@ -51,35 +51,71 @@ def drop_lost(points):
     return points[np.any(points[:, :3] != 0, axis=1)]
 
 
-DARTS = Integral("area of the quarter disk, ∫ [u_x² + u_y² < 1] du", lambda k: math.pi / 4,
-                 lambda u: (u[:, 0] ** 2 + u[:, 1] ** 2 < 1).astype(float))
-COSINES = [Integral("∫ n·ω dω over the hemisphere", lambda k: math.pi, lambda p: math.pi * p[:, 3]),
-           Integral("∫ (n·ω)² dω over the hemisphere", lambda k: 2 * math.pi / 3, lambda p: math.pi * p[:, 3] * p[:, 2])]
-MEAN_SQUARE = Integral("∫ ((u_1 + … + u_k) / k)² du over [0,1]^k", lambda k: 1 / 4 + 1 / (12 * k),
-                       lambda u: u.mean(axis=1) ** 2)
+DARTS = Integral(
+    "area of the quarter disk, ∫ [u_x² + u_y² < 1] du",
+    lambda k: math.pi / 4,
+    lambda u: (u[:, 0] ** 2 + u[:, 1] ** 2 < 1).astype(float),
+)
+COSINES = [
+    Integral("∫ n·ω dω over the hemisphere", lambda k: math.pi, lambda p: math.pi * p[:, 3]),
+    Integral("∫ (n·ω)² dω over the hemisphere", lambda k: 2 * math.pi / 3, lambda p: math.pi * p[:, 3] * p[:, 2]),
+]
+MEAN_SQUARE = Integral("∫ ((u_1 + … + u_k) / k)² du over [0,1]^k", lambda k: 1 / 4 + 1 / (12 * k), lambda u: u.mean(axis=1) ** 2)
 COMPARED = {"the quarter disk's area": DARTS, "a smooth integral": MEAN_SQUARE}  # with each point set
 
 PLAYGROUNDS = {
-    "1d": Playground("1D Monte Carlo integration", "numbers", [
-        Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
-        "u", dimensions=1),
-    "kd": Playground("kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", other="u_2", dimensions=4),
+    "1d": Playground(
+        "1D Monte Carlo integration",
+        "numbers",
+        [Integral("∫ sin(π u) du from 0 to 1", lambda k: 2 / math.pi, lambda u: np.sin(np.pi * u[:, 0]))],
+        "u",
+        dimensions=1,
+    ),
+    "kd": Playground(
+        "kD Monte Carlo integration; --dimensions sets k", "numbers", [MEAN_SQUARE], "u_1", other="u_2", dimensions=4
+    ),
     "numbers": Playground("pairs of random numbers by PCG2D, shaders/world/random.glsl", "numbers", [DARTS], "u_x"),
-    "blog-hash": Playground("what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"),
+    "blog-hash": Playground(
+        "what the blog takes for random numbers: frac(sin(dot(p, …)) · 43758.5)", "blog-hash", [DARTS], "u_x"
+    ),
 }
 
 # What a chapter's chapter.json calls "points": the sampler, and what else its playground needs.
 KINDS = {
-    "directions": ("directions", {
-        "integrals": COSINES, "coordinate": "cos θ", "coordinates": lambda p: drop_lost(p)[:, 2], "kind": "disk",
-        "others": lambda p: np.arctan2(drop_lost(p)[:, 1], drop_lost(p)[:, 0]) / (2 * math.pi) + 0.5, "other": "φ"}),
-    "light points": ("light points", {
-        "integrals": [Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])], "coordinate": "w_1", "kind": "triangle",
-        "others": lambda w: w[:, 1] / np.maximum(1 - w[:, 0], 1e-30), "other": "w_2 / (1 - w_1)"}),
-    "lens points": ("lens points", {
-        "integrals": [Integral("∫ r² dA over the unit disc", lambda k: math.pi / 2, lambda p: math.pi * (p**2).sum(axis=1))],
-        "coordinate": "r²", "coordinates": lambda p: (p**2).sum(axis=1), "kind": "aperture",
-        "others": lambda p: np.arctan2(p[:, 1], p[:, 0]) / (2 * math.pi) + 0.5, "other": "φ"}),
+    "directions": (
+        "directions",
+        {
+            "integrals": COSINES,
+            "coordinate": "cos θ",
+            "coordinates": lambda p: drop_lost(p)[:, 2],
+            "kind": "disk",
+            "others": lambda p: np.arctan2(drop_lost(p)[:, 1], drop_lost(p)[:, 0]) / (2 * math.pi) + 0.5,
+            "other": "φ",
+        },
+    ),
+    "light points": (
+        "light points",
+        {
+            "integrals": [Integral("∫ w_1 dA over the triangle", lambda k: 1 / 3, lambda w: w[:, 0])],
+            "coordinate": "w_1",
+            "kind": "triangle",
+            "others": lambda w: w[:, 1] / np.maximum(1 - w[:, 0], 1e-30),
+            "other": "w_2 / (1 - w_1)",
+        },
+    ),
+    "lens points": (
+        "lens points",
+        {
+            "integrals": [
+                Integral("∫ r² dA over the unit disc", lambda k: math.pi / 2, lambda p: math.pi * (p**2).sum(axis=1))
+            ],
+            "coordinate": "r²",
+            "coordinates": lambda p: (p**2).sum(axis=1),
+            "kind": "aperture",
+            "others": lambda p: np.arctan2(p[:, 1], p[:, 0]) / (2 * math.pi) + 0.5,
+            "other": "φ",
+        },
+    ),
     "pixel": ("numbers", {"integrals": [DARTS, MEAN_SQUARE], "coordinate": "u_x", "is_pixel": True}),
 }
 
@@ -105,9 +141,15 @@ def own_playground(number):
 
 def draw(playground, count, seed, dimensions, device=None, samples=1):
     """Array [index, column] of points: the first ones of the pixels, or `samples` of each pixel."""
-    result = run_program([PROGRAM, playground.sampler, playground.chapter, count, samples, seed, dimensions, device or ""], encoding=None, errors=None)
+    result = run_program(
+        [PROGRAM, playground.sampler, playground.chapter, count, samples, seed, dimensions, device or ""],
+        encoding=None,
+        errors=None,
+    )
     if result.returncode != 0:
-        raise UserError(result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}")
+        raise UserError(
+            result.stderr.decode().strip().removeprefix("error: ") or f"{PROGRAM.name} ended with {result.returncode}"
+        )
     return np.frombuffer(result.stdout, np.float32).reshape(count, -1).astype(float)
 
 
@@ -115,8 +157,10 @@ def draw_sets(seed, device=None, points=None):
     """Name -> points [pixel, index, axis] of many pixels: random ones, Sobol's, and scrambled ones of a chapter or its copy."""
     points = points or next(playground for playground in PLAYGROUNDS.values() if playground.is_pixel)
     kinds = {"random": PLAYGROUNDS["numbers"], "Sobol": replace(points, sampler="sobol"), "scrambled": points}
-    return {name: draw(kind, point_sets.PIXELS * point_sets.SIZE, seed, 2, device, point_sets.SIZE).reshape(point_sets.PIXELS, -1, 2)
-            for name, kind in kinds.items()}
+    return {
+        name: draw(kind, point_sets.PIXELS * point_sets.SIZE, seed, 2, device, point_sets.SIZE).reshape(point_sets.PIXELS, -1, 2)
+        for name, kind in kinds.items()
+    }
 
 
 def histogram(playground, points):
@@ -174,12 +218,16 @@ def report(playground, points, dimensions):
     for low, high, count, mean in zip(edges, edges[1:], counts, expected):
         lines.append(f"{low:5.3f}–{high:5.3f} {count:8d} {mean:9.1f}  {'#' * round(scale * count)}")
     deviation = (np.abs(counts - expected) / np.sqrt(expected * (1 - expected / expected.sum()))).max()
-    lines.append(f"largest deviation of a count: {deviation:.1f} standard errors, " +
-                 ("too large for chance" if deviation > CHANCE else f"which is chance: below {CHANCE}"))
+    lines.append(
+        f"largest deviation of a count: {deviation:.1f} standard errors, "
+        + ("too large for chance" if deviation > CHANCE else f"which is chance: below {CHANCE}")
+    )
     statistic, freedom, chance = chi_square(playground, points)
-    names = [playground.coordinate, playground.other][:points.shape[1]]
-    lines.append(f"chi² of {' and '.join(names)}: {statistic:.1f} at {freedom} degrees of "
-                 f"freedom, p = {chance:.2g}, " + ("too large for chance" if chance < SIGNIFICANCE else "which is chance"))
+    names = [playground.coordinate, playground.other][: points.shape[1]]
+    lines.append(
+        f"chi² of {' and '.join(names)}: {statistic:.1f} at {freedom} degrees of "
+        f"freedom, p = {chance:.2g}, " + ("too large for chance" if chance < SIGNIFICANCE else "which is chance")
+    )
     for integral in playground.integrals:
         exact = integral.value(dimensions)
         lines += ["", f"{integral.formula} = {exact:.6f}", f"{'N':>9}   estimate   95 % interval        error"]
@@ -196,7 +244,9 @@ def report(playground, points, dimensions):
 def parse():
     names = "\n".join(f"  {name:15s} {playground.title}" for name, playground in PLAYGROUNDS.items())
     parser = Parser("./lab sample", __doc__, epilog=f"names:\n{names}")
-    parser.add_argument("name", nargs="?", metavar="NAME|N", help="what to sample, or a chapter or copy; without, the names are listed")
+    parser.add_argument(
+        "name", nargs="?", metavar="NAME|N", help="what to sample, or a chapter or copy; without, the names are listed"
+    )
     parser.add_argument("--count", type=number(int, 16, 1 << 22), default=4096, help="number of points; default: 4096")
     parser.add_argument("--seed", type=number(int, 0, 2**32 - 1), default=0, help="chooses the random numbers; default: 0")
     parser.add_argument("--dimensions", type=number(int, 1, 8), help="k of kd; default: 4")
@@ -223,13 +273,16 @@ def main():
     samples = options.count if playground.is_pixel else 1
     points = draw(playground, options.count, options.seed, dimensions, options.device, samples)
     if not np.isfinite(points).all() or not len(playground.coordinates(points)):
-        raise UserError(f"chapters/{playground.chapter}: its sampler returns no direction, or numbers that are infinite or not a number")
+        raise UserError(
+            f"chapters/{playground.chapter}: its sampler returns no direction, or numbers that are infinite or not a number"
+        )
     print(report(playground, points, dimensions))
     if playground.is_pixel:
         sets = draw_sets(options.seed, options.device, playground)
         print("\n".join(point_sets.report(sets, COMPARED)))
     output = options.output or ROOT / f"output/sample_{options.name}.png"
     from lesson import sample_plots  # imported late: Matplotlib takes longer to load than everything else
+
     try:
         if playground.is_pixel:
             sample_plots.save_point_sets(output, sets, COMPARED)

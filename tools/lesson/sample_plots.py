@@ -14,7 +14,14 @@ def scatter(axis, kind, points):
     """Scatter plot: numbers in their square, directions seen from above, barycentric coordinates in the plane."""
     points = points[:SHOWN]
     is_line = points.shape[1] == 1
-    axis.plot(points[:, 0], np.arange(len(points)) if is_line else points[:, 1], ".", color=COLOURS[0], markersize=2.5, markeredgewidth=0)
+    axis.plot(
+        points[:, 0],
+        np.arange(len(points)) if is_line else points[:, 1],
+        ".",
+        color=COLOURS[0],
+        markersize=2.5,
+        markeredgewidth=0,
+    )
     if kind in ("disk", "aperture"):
         angle = np.linspace(0, 2 * np.pi, 200)
         axis.plot(np.cos(angle), np.sin(angle), color="#666666", linewidth=0.8)
@@ -70,7 +77,8 @@ def save_point_sets(path, sets, integrals):
         points.plot(*point_sets.first_points(sets, name, shown)[0].T, ".", color=COLOURS[0], markersize=4, markeredgewidth=0)
         points.set(aspect="equal", xlim=(0, 1), ylim=(0, 1), xticks=[], yticks=[])
         figure.add_subplot(axes[1, column], title="spectrum" + (", mean of pixels" if column else ""), xlabel="frequency").imshow(
-            power, cmap="gray", vmin=0, vmax=2, extent=[-reach, reach, -reach, reach], interpolation="nearest")
+            power, cmap="gray", vmin=0, vmax=2, extent=[-reach, reach, -reach, reach], interpolation="nearest"
+        )
     for row, (title, integral) in enumerate(integrals.items()):
         axis = figure.add_subplot(axes[row, -1])
         for (name, errors), colour, marker in zip(point_sets.errors(sets, integral).items(), COLOURS, MARKERS):

@@ -7,7 +7,20 @@ from itertools import groupby
 from pathlib import Path
 
 from includes import included, named_files
-from project import CHAPTERS, ROOT, Parser, UserError, description, failure_text, number, original, program_file, read_json, run_program, text_of
+from project import (
+    CHAPTERS,
+    ROOT,
+    Parser,
+    UserError,
+    description,
+    failure_text,
+    number,
+    original,
+    program_file,
+    read_json,
+    run_program,
+    text_of,
+)
 
 ENGINE = ROOT / "shaders/engine/render_samples.glsl"  # what all backends compile
 DIRECTIVE = re.compile(r" *# *(if|ifdef|ifndef|elif|else|endif|define|undef)\b *(.*)")
@@ -68,13 +81,18 @@ def parts_of(chapter, scene):
 def listing(chapter, scene=None):
     """The parts as one text."""
     scene = scene or description(CHAPTERS[chapter]).get("default_scene", "cornell_box")
-    return "\n".join(f"// ======== {file.relative_to(ROOT / 'chapters').as_posix()} ========\n{text}\n" for file, text in parts_of(chapter, scene))
+    return "\n".join(
+        f"// ======== {file.relative_to(ROOT / 'chapters').as_posix()} ========\n{text}\n"
+        for file, text in parts_of(chapter, scene)
+    )
 
 
 def main():
     parser = Parser("./lab show", __doc__)
     parser.add_argument("chapter", type=number(int, 1), metavar="N", help="number of the chapter")
-    parser.add_argument("scene", nargs="?", metavar="SCENE", help="a scene file, or the name of one in assets/scenes; default: the chapter's own")
+    parser.add_argument(
+        "scene", nargs="?", metavar="SCENE", help="a scene file, or the name of one in assets/scenes; default: the chapter's own"
+    )
     options = parser.parse_args()
     if options.chapter not in CHAPTERS:
         raise UserError(f"there is no chapter {options.chapter}; ./lab run lists them")

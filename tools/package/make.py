@@ -24,7 +24,15 @@ NAME = "path_tracing_lab"
 FOLDERS = ["assets", "chapters", "docs", KNOWLEDGE.relative_to(ROOT).as_posix(), "shaders", "tools"]
 FILES = ["CHANGELOG.md", "LICENSE", "README.md"]
 # Solutions and other material for teachers, and what needs the sources.
-LEFT_OUT = ["tools/book/*", "tools/course/*", "tools/docs/*", "tools/package/*", "chapters/*/mistakes.json", "chapters/*/solutions/*", "*/__pycache__/*"]
+LEFT_OUT = [
+    "tools/book/*",
+    "tools/course/*",
+    "tools/docs/*",
+    "tools/package/*",
+    "chapters/*/mistakes.json",
+    "chapters/*/solutions/*",
+    "*/__pycache__/*",
+]
 DATE = 1980, 1, 1, 0, 0, 0  # for all files: the same sources make the same archive
 BOOK = ROOT / "output/book"
 
@@ -45,8 +53,10 @@ def windows_files(chapters):
     windows_programs.build([*chapters, *windows_programs.OTHERS])
     # Windows' command interpreter needs CR LF.
     files = {"lab.cmd": (HERE / "lab.cmd").read_bytes().replace(b"\n", b"\r\n")}
-    return files | {f"build/bin/{name}.exe": (windows_programs.PROGRAMS / f"{name}.exe").read_bytes()
-                    for name in [*chapters, *windows_programs.OTHERS]}
+    return files | {
+        f"build/bin/{name}.exe": (windows_programs.PROGRAMS / f"{name}.exe").read_bytes()
+        for name in [*chapters, *windows_programs.OTHERS]
+    }
 
 
 def linux_files(chapters):

@@ -18,7 +18,9 @@ PACKAGES = ["glslang-dev", "libglfw3-dev", "libimgui-dev", "libimath-dev", "libo
 
 def fetch_sources():
     """Unpacks the sources into SOURCES/NAME-VERSION. Uses private package lists, so it needs no root and leaves apt's alone."""
-    versions = run_to_end(["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions").split()
+    versions = run_to_end(
+        ["dpkg-query", "-W", "-f", "${source:Package}=${source:Version} ", *PACKAGES], "Asking for versions"
+    ).split()
     stamp = SOURCES / "versions.txt"
     if stamp.exists() and stamp.read_text(encoding="utf-8").split() == versions:
         return
@@ -27,12 +29,26 @@ def fetch_sources():
         (SOURCES / folder).mkdir(parents=True)
     for file in [Path("/etc/apt/sources.list"), *Path("/etc/apt/sources.list.d").glob("*")]:
         if file.suffix in (".list", ".sources") and file.exists():
-            text = re.sub(r"(?m)^(deb |Types:.*)", lambda kind: "deb-src " if kind[0] == "deb " else "Types: deb-src",
-                          file.read_text(encoding="utf-8"))
+            text = re.sub(
+                r"(?m)^(deb |Types:.*)",
+                lambda kind: "deb-src " if kind[0] == "deb " else "Types: deb-src",
+                file.read_text(encoding="utf-8"),
+            )
             (SOURCES / "apt/parts" / file.name).write_text(text, encoding="utf-8")
     apt = SOURCES / "apt"
-    command = ["apt-get", "-o", "Dir::Etc::SourceList=/dev/null", "-o", f"Dir::Etc::SourceParts={apt}/parts",
-               "-o", f"Dir::State::Lists={apt}/lists", "-o", f"Dir::Cache={apt}/cache", "-o", "APT::Sandbox::User="]
+    command = [
+        "apt-get",
+        "-o",
+        "Dir::Etc::SourceList=/dev/null",
+        "-o",
+        f"Dir::Etc::SourceParts={apt}/parts",
+        "-o",
+        f"Dir::State::Lists={apt}/lists",
+        "-o",
+        f"Dir::Cache={apt}/cache",
+        "-o",
+        "APT::Sandbox::User=",
+    ]
     run_to_end([*command, "update"], "Fetching the lists of sources")
     run_to_end([*command, "source", "--download-only", *versions], "Fetching sources", cwd=SOURCES)
     for description in SOURCES.glob("*.dsc"):
@@ -46,8 +62,21 @@ def fetch_sources():
 def cmake(source, build, what, targets, **variables):
     """Configures and builds; takes a second if the folder is up to date."""
     variables |= {"CMAKE_BUILD_TYPE": "Release", "CMAKE_CXX_FLAGS_RELEASE": "-O2", "LAB_WINDOWS_LIBRARIES": LIBRARIES}
-    run_to_end(["cmake", "-G", "Ninja", "-S", source, "-B", build, "--toolchain", HERE / "toolchain.cmake",
-                *(f"-D{name}={value}" for name, value in variables.items())], f"Configuring {what}")
+    run_to_end(
+        [
+            "cmake",
+            "-G",
+            "Ninja",
+            "-S",
+            source,
+            "-B",
+            build,
+            "--toolchain",
+            HERE / "toolchain.cmake",
+            *(f"-D{name}={value}" for name, value in variables.items()),
+        ],
+        f"Configuring {what}",
+    )
     print(f"Building {what} ...", file=sys.stderr, flush=True)
     run_to_end(["cmake", "--build", build, "--target", *targets], f"Building {what}")
 
@@ -57,8 +86,14 @@ def build(targets):
     if not shutil.which(COMPILER):
         raise UserError("there is no compiler for Windows: ./lab package windows installs it")
     fetch_sources()
-    cmake(HERE, BUILD / "libraries_build", "the libraries for Windows (minutes, once)", ["install"],
-          LAB_SOURCES=SOURCES, CMAKE_INSTALL_PREFIX=LIBRARIES)
+    cmake(
+        HERE,
+        BUILD / "libraries_build",
+        "the libraries for Windows (minutes, once)",
+        ["install"],
+        LAB_SOURCES=SOURCES,
+        CMAKE_INSTALL_PREFIX=LIBRARIES,
+    )
     cmake(ROOT, BUILD / "programs", "the programs for Windows", targets, LAB_TESTS="ON")
 
 

@@ -63,6 +63,7 @@ def connected_parts(positions):
 
 def pierce(first, second):
     """Whether an edge of the first triangle of each pair meets the second one."""
+
     def sign(u, v, w):
         return np.sign((u * np.cross(v, w)).sum(axis=1))
 
@@ -79,7 +80,10 @@ class Bodies:
         self.path, self.fog, self.bodies = path, fog, sorted(bodies, key=lambda body: -abs(body.volume))
         open_bodies = [body for body in self.bodies if body.is_open]
         if len(open_bodies) > MOST_OPEN:
-            self.refuse(open_bodies[0], f"Mitsuba loses light behind more than {MOST_OPEN} open boundaries, and there are {len(open_bodies)}")
+            self.refuse(
+                open_bodies[0],
+                f"Mitsuba loses light behind more than {MOST_OPEN} open boundaries, and there are {len(open_bodies)}",
+            )
         owners = np.full(len(positions), -1)
         for i, body in enumerate(self.bodies):
             owners[body.triangles] = i
@@ -126,7 +130,9 @@ class Bodies:
 
     def _check_contacts(self, index, positions, owners):
         body, scale = self.bodies[index], np.abs(positions).max(axis=(1, 2))
-        for pairs in near_pairs(positions, body.triangles, (owners != index).nonzero()[0], TOUCHING * scale[body.triangles].max()):
+        for pairs in near_pairs(
+            positions, body.triangles, (owners != index).nonzero()[0], TOUCHING * scale[body.triangles].max()
+        ):
             first, second = positions[pairs[:, 0]], positions[pairs[:, 1]]
             touch = overlap(first, second, TOUCHING * scale[pairs].min(axis=1))
             other = owners[pairs[:, 1]] >= 0
@@ -137,7 +143,7 @@ class Bodies:
 
     def _find_sides(self, index):
         body = self.bodies[index]
-        chosen = body.corners[::max(1, len(body.corners) // ASKED)]
+        chosen = body.corners[:: max(1, len(body.corners) // ASKED)]
         offset = ASIDE * np.abs(body.corners).max() * triangle_normals(chosen)
         around = [self._innermost(chosen.mean(axis=1) + side * offset) for side in (-1, 1)]
         behind, before = (indices[0] for indices in around)

@@ -33,7 +33,10 @@ class Opaque(ByEvalPdf):
     def __init__(self, properties):
         super().__init__(properties)
         self.diffuse = properties.get_texture("diffuse")
-        self.m_components = [mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide, mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide]
+        self.m_components = [
+            mi.BSDFFlags.DiffuseReflection | mi.BSDFFlags.FrontSide,
+            mi.BSDFFlags.GlossyReflection | mi.BSDFFlags.FrontSide,
+        ]
         self.m_flags = self.m_components[0] | self.m_components[1]
 
     def sample(self, ctx, si, sample1, sample2, active=True):
@@ -96,7 +99,9 @@ class Phong(Opaque):
         t = dr.tanh(-0.5 * dr.log(1 - sample2.x) / (self.exponent + 1))
         phi = 2 * dr.pi * sample2.y
         lobe = mi.Vector3f(2 * dr.sqrt(t) * dr.cos(phi), 2 * dr.sqrt(t) * dr.sin(phi), 1 - t) / (1 + t)
-        return dr.select(sample1 < probability, mi.Frame3f(mi.reflect(si.wi)).to_world(lobe), mi.warp.square_to_cosine_hemisphere(sample2))
+        return dr.select(
+            sample1 < probability, mi.Frame3f(mi.reflect(si.wi)).to_world(lobe), mi.warp.square_to_cosine_hemisphere(sample2)
+        )
 
     def eval_pdf(self, ctx, si, wo, active=True):
         active &= (si.wi.z > 0) & (wo.z > 0)
@@ -144,7 +149,9 @@ class RoughOpaque(Opaque):
 
     def __init__(self, properties):
         super().__init__(properties)
-        self.facets, self.metalness, self.index, self.alpha = (properties[name] for name in ("facets", "metalness", "index", "alpha"))
+        self.facets, self.metalness, self.index, self.alpha = (
+            properties[name] for name in ("facets", "metalness", "index", "alpha")
+        )
         self.facet_probability = 0.5 + 0.5 * self.metalness
         cosines = np.linspace(0, 1, 257) ** 2
         albedo = np.array([self.coat_albedo(max(cosine, 1e-6)) for cosine in cosines])
@@ -162,11 +169,14 @@ class RoughOpaque(Opaque):
         seen = (m_o > 0) & (z > 0)
         m_o, z = np.where(seen, m_o, 1), np.where(seen, z, 1)
         refracted = np.sqrt(self.index**2 - 1 + m_o**2)
-        fresnel = 0.5 * (((m_o - refracted) / (m_o + refracted)) ** 2
-                         + ((self.index**2 * m_o - refracted) / (self.index**2 * m_o + refracted)) ** 2)
+        fresnel = 0.5 * (
+            ((m_o - refracted) / (m_o + refracted)) ** 2
+            + ((self.index**2 * m_o - refracted) / (self.index**2 * m_o + refracted)) ** 2
+        )
 
         def term(c):
             return 0.5 * (np.sqrt(1 + self.alpha**2 * (1 / c**2 - 1)) - 1)
+
         part = fresnel * m_o / (cosine * m_z * (1 + term(cosine) + term(z)))
         return (np.where(seen, part, 0) * 3 * (1 - u) ** (2 / 3)).mean()
 
@@ -205,8 +215,14 @@ def make_diffuse_reflectance(material):
     if material.texture is None:
         return colour(material.diffuse_albedo)
     pixels = (material.diffuse_albedo * load_image(material.texture)).astype(np.float32)
-    return {"type": "bitmap", "data": mi.TensorXf(np.ascontiguousarray(pixels)), "raw": True, "format": "variant",
-            "filter_type": "bilinear", "wrap_mode": "repeat"}
+    return {
+        "type": "bitmap",
+        "data": mi.TensorXf(np.ascontiguousarray(pixels)),
+        "raw": True,
+        "format": "variant",
+        "filter_type": "bilinear",
+        "wrap_mode": "repeat",
+    }
 
 
 def make_bsdf(surface, own_normals):
@@ -214,22 +230,42 @@ def make_bsdf(surface, own_normals):
     if surface.is_open:
         return {"type": "null"}
     if material.roughness > 0 and material.refractive_index > 0:
-        bsdf = {"type": "rough_glass", "alpha": material.roughness,
-                "nested": {"type": "roughdielectric", "distribution": "ggx", "alpha": material.roughness,
-                           "int_ior": material.refractive_index, "ext_ior": 1.0}}
+        bsdf = {
+            "type": "rough_glass",
+            "alpha": material.roughness,
+            "nested": {
+                "type": "roughdielectric",
+                "distribution": "ggx",
+                "alpha": material.roughness,
+                "int_ior": material.refractive_index,
+                "ext_ior": 1.0,
+            },
+        }
     elif material.roughness > 0:
-        bsdf = {"type": "twosided", "nested": {
-            "type": "rough_opaque", "diffuse": make_diffuse_reflectance(material), "metalness": material.metalness,
-            "index": material.coat_index, "alpha": material.roughness,
-            "facets": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": material.roughness}}}
+        bsdf = {
+            "type": "twosided",
+            "nested": {
+                "type": "rough_opaque",
+                "diffuse": make_diffuse_reflectance(material),
+                "metalness": material.metalness,
+                "index": material.coat_index,
+                "alpha": material.roughness,
+                "facets": {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": material.roughness},
+            },
+        }
     elif material.refractive_index > 0:
         bsdf = {"type": "dielectric", "int_ior": material.refractive_index, "ext_ior": 1.0}
     elif material.specular_albedo.any():
-        bsdf = {"type": "twosided", "nested": {
-            "type": "phong_lobe", "diffuse": make_diffuse_reflectance(material),
-            "specular": colour(material.specular_albedo), "exponent": material.specular_exponent}}
+        bsdf = {
+            "type": "twosided",
+            "nested": {
+                "type": "phong_lobe",
+                "diffuse": make_diffuse_reflectance(material),
+                "specular": colour(material.specular_albedo),
+                "exponent": material.specular_exponent,
+            },
+        }
     else:
-        bsdf = {"type": "twosided",
-                "nested": {"type": "diffuse", "reflectance": make_diffuse_reflectance(material)}}
+        bsdf = {"type": "twosided", "nested": {"type": "diffuse", "reflectance": make_diffuse_reflectance(material)}}
     is_left_alone = surface.normals is None or own_normals
     return bsdf if is_left_alone else {"type": "interpolated_normals", "nested": bsdf}

@@ -56,8 +56,9 @@ def write_exr(path, channels, attributes):
     pixels = np.stack([channels[name] for name in names], axis=1).astype("<f4")  # [row, channel, column]
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
     header = MAGIC
-    header += attribute("channels", "chlist", b"".join(
-        name.encode() + b"\0" + struct.pack("<iiii", FLOAT, 0, 1, 1) for name in names) + b"\0")
+    header += attribute(
+        "channels", "chlist", b"".join(name.encode() + b"\0" + struct.pack("<iiii", FLOAT, 0, 1, 1) for name in names) + b"\0"
+    )
     header += attribute("compression", "compression", bytes([ZIP]))
     header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
     header += attribute("lineOrder", "lineOrder", b"\0")
@@ -69,7 +70,7 @@ def write_exr(path, channels, attributes):
     step, blocks, offsets = ROWS_PER_BLOCK[ZIP], [], []
     position = len(header) + 8 * -(-height // step)
     for first in range(0, height, step):
-        packed = compress(pixels[first:first + step].tobytes())
+        packed = compress(pixels[first : first + step].tobytes())
         offsets.append(position)
         blocks.append(struct.pack("<ii", first, len(packed)) + packed)
         position += len(blocks[-1])
@@ -81,11 +82,11 @@ def write_exr(path, channels, attributes):
 def read_header(content):
     """Attributes up to the damage, if any, as name -> (kind, bytes), and the position where the header ends."""
     position, attributes = len(MAGIC), {}
-    while content[position:position + 1] not in (b"", b"\0"):
-        name, kind, rest = content[position:position + 1024].split(b"\0", 2)
+    while content[position : position + 1] not in (b"", b"\0"):
+        name, kind, rest = content[position : position + 1024].split(b"\0", 2)
         size = int.from_bytes(rest[:4], "little")
         position += len(name) + len(kind) + 6 + size
-        attributes[name.decode()] = kind, content[position - size:position]
+        attributes[name.decode()] = kind, content[position - size : position]
     return attributes, position + 1
 
 
@@ -112,7 +113,7 @@ def read_channels(content):
     step, rows = ROWS_PER_BLOCK[header["compression"][1][0]], []
     for offset in struct.unpack_from(f"<{-(-height // step)}Q", content, position):
         first, size = struct.unpack_from("<ii", content, offset)
-        block = content[offset + 8:offset + 8 + size]
+        block = content[offset + 8 : offset + 8 + size]
         shape = (min(step, height - (first - top)), len(names), width)
         rows.append(np.frombuffer(expand(block, 4 * np.prod(shape)), "<f4").reshape(shape))
     pixels = np.concatenate(rows)

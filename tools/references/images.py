@@ -12,6 +12,7 @@ FOLDERS = [ROOT / "assets/references", ROOT / "output/references"]  # where ./la
 @dataclass
 class Reference:
     """Arrays [row, column, channel] of the mean of all samples and of that mean's variance, 0 if unknown."""
+
     mean: np.ndarray
     variance: np.ndarray
     attributes: dict
@@ -43,7 +44,7 @@ def read_rgb(path):
 def averaged(image, scale):
     """The image with blocks of scale x scale pixels averaged. What is left at its edges is dropped."""
     height, width = image.shape[0] // scale, image.shape[1] // scale
-    return image[:height * scale, :width * scale].reshape(height, scale, width, scale, -1).mean(axis=(1, 3))
+    return image[: height * scale, : width * scale].reshape(height, scale, width, scale, -1).mean(axis=(1, 3))
 
 
 def read_reference(path):

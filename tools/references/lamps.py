@@ -35,18 +35,23 @@ def resolve_place(triangles, materials, fronts, owners):
     kept = by_owner[0]
     is_clear = not any(materials[i].refractive_index > 0 for i in triangles) and all(
         sides.keys() == kept.keys() and all(materials[sides[front]].equals(materials[kept[front]]) for front in kept)
-        for sides in by_owner)
+        for sides in by_owner
+    )
     return list(kept.values()) if is_clear else None
 
 
 def overlap(first, second, tolerance):
     """Whether triangles of each pair lie in the same plane and have an area in common: no edge separates them."""
-    distances = [np.abs(((b - a[:, :1]) * triangle_normals(a)[:, None]).sum(axis=2)).max(axis=1)
-                 for a, b in ((first, second), (second, first))]
+    distances = [
+        np.abs(((b - a[:, :1]) * triangle_normals(a)[:, None]).sum(axis=2)).max(axis=1)
+        for a, b in ((first, second), (second, first))
+    ]
     edges = np.concatenate([np.roll(corners, -1, axis=1) - corners for corners in (first, second)], axis=1)
     axes = np.cross(edges, triangle_normals(first)[:, None])
     axes /= np.maximum(np.linalg.norm(axes, axis=2, keepdims=True), 1e-300)
-    low, high = ([limit(np.einsum("pci,pai->pac", corners, axes), axis=2) for corners in (first, second)] for limit in (np.min, np.max))
+    low, high = (
+        [limit(np.einsum("pci,pai->pac", corners, axes), axis=2) for corners in (first, second)] for limit in (np.min, np.max)
+    )
     depth = (np.minimum(*high) - np.maximum(*low)).min(axis=1)
     size = np.minimum(*(np.linalg.norm(np.ptp(corners, axis=1), axis=1) for corners in (first, second)))
     return (np.minimum(*distances) <= tolerance) & (depth > GAP * size)
@@ -57,8 +62,10 @@ def near_pairs(positions, chosen, others, tolerance):
     low, high = positions.min(axis=1), positions.max(axis=1)
 
     def near_box(triangles, around):
-        return around[(low[around] <= high[triangles].max(axis=0) + tolerance).all(axis=1) &
-                      (high[around] >= low[triangles].min(axis=0) - tolerance).all(axis=1)]
+        return around[
+            (low[around] <= high[triangles].max(axis=0) + tolerance).all(axis=1)
+            & (high[around] >= low[triangles].min(axis=0) - tolerance).all(axis=1)
+        ]
 
     chosen = chosen[np.argsort(low[chosen, 0])]
     others = near_box(chosen, others)
@@ -90,8 +97,10 @@ def resolve_lamps(path, positions, materials, owners):
 
     def refuse(triangle):
         centre = ", ".join(f"{x:.4g}" for x in positions[triangle].mean(axis=0))
-        raise UserError(f"{path}: a lamp of material '{materials[triangle].name}' and another triangle share a place around "
-                        f"({centre}): rays find either by chance, so that there is no reference; move one of them")
+        raise UserError(
+            f"{path}: a lamp of material '{materials[triangle].name}' and another triangle share a place around "
+            f"({centre}): rays find either by chance, so that there is no reference; move one of them"
+        )
 
     places, fronts = get_places(positions)
     shared = {place: [] for place in places[is_lamp]}

@@ -58,17 +58,34 @@ def make_reference(scene_file, output, width, height, max_path_length, samples, 
     max_path_length = scene.max_path_length if max_path_length is None else max_path_length
     batches = max(BATCHES, math.ceil(samples * width * height / MAX_BATCH_PATHS))
     samples_per_batch = math.ceil(samples / batches)
-    attributes = {"scene": Path(scene_file).name, "scene_hash": scene.hash, "width": width, "height": height,
-                  "max_path_length": max_path_length, "seed": seed, "samples": batches * samples_per_batch}
-    if keep and output.exists() and {key: str(value) for key, value in attributes.items()}.items() <= read_attributes(output).items():
+    attributes = {
+        "scene": Path(scene_file).name,
+        "scene_hash": scene.hash,
+        "width": width,
+        "height": height,
+        "max_path_length": max_path_length,
+        "seed": seed,
+        "samples": batches * samples_per_batch,
+    }
+    if (
+        keep
+        and output.exists()
+        and {key: str(value) for key, value in attributes.items()}.items() <= read_attributes(output).items()
+    ):
         print(f"{output}: is up to date")
         return
     mitsuba_scene, integrator = make_mitsuba_scene(scene, width, height, max_path_length)
     mean, variance, done = render_batches(mitsuba_scene, output.stem, batches, samples_per_batch, seed)
     if not np.isfinite(mean).all():
         raise UserError(f"{scene_file}: Mitsuba's image has pixels that are infinite or not a number")
-    attributes |= {"samples": done * samples_per_batch, "batches": done, "renderer": "Mitsuba",
-                   "version": mi.__version__, "variant": mi.variant(), "integrator": integrator}
+    attributes |= {
+        "samples": done * samples_per_batch,
+        "batches": done,
+        "renderer": "Mitsuba",
+        "version": mi.__version__,
+        "variant": mi.variant(),
+        "integrator": integrator,
+    }
     write_exr(output, rgb_channels(mean) | rgb_channels(variance, "variance."), attributes)
     error = math.sqrt(variance.mean(axis=2).sum()) / mean.mean() / (width * height) if mean.any() else 0
     print(f"{output}: {done * samples_per_batch} samples a pixel, the image's mean is known to {100 * error:.2g} %")
@@ -80,14 +97,16 @@ def main():
     parser = Parser("./lab reference", "Renders reference images with Mitsuba 3.")
     positive = number(int, 1)
     parser.add_argument("scene", nargs="?", type=Path, help="a .json or .obj file")
-    parser.add_argument("--all", action="store_true",
-                        help="those in assets/references whose scenes have changed; only --seed and --variant count")
+    parser.add_argument(
+        "--all", action="store_true", help="those in assets/references whose scenes have changed; only --seed and --variant count"
+    )
     parser.add_argument("--output", type=Path, metavar="FILE.exr", help="default: output/references/SCENE.exr")
     parser.add_argument("--width", type=positive, help="default: as the scene says, else 512")
     parser.add_argument("--height", type=positive, help="default: as the scene says, else 512")
     parser.add_argument("--max-path-length", type=number(int, 0), help="default: as the scene says, else 8")
-    parser.add_argument("--samples", type=positive, default=1024,
-                        help="a pixel, rounded up to a multiple of 64 or more batches; default: 1024")
+    parser.add_argument(
+        "--samples", type=positive, default=1024, help="a pixel, rounded up to a multiple of 64 or more batches; default: 1024"
+    )
     parser.add_argument("--seed", type=number(int, 0), default=1, help="default: 1")
     parser.add_argument("--variant", choices=list(VARIANTS), default="scalar_rgb", help="of Mitsuba; default: scalar_rgb")
     options = parser.parse_args()
@@ -101,7 +120,9 @@ def main():
 def make(options):
     if not options.all:
         output = options.output or FOLDERS[1] / f"{options.scene.stem}.exr"
-        make_reference(options.scene, output, options.width, options.height, options.max_path_length, options.samples, options.seed)
+        make_reference(
+            options.scene, output, options.width, options.height, options.max_path_length, options.samples, options.seed
+        )
         return
     for file in sorted(FOLDERS[0].glob("*.exr")):
         stated = read_attributes(file)

@@ -9,6 +9,7 @@ from material_keywords import KEYWORDS
 class Material:
     """Has the members of Material in shaders/interface.h. Albedos are linear and sum to at most 1. Compared and hashed by identity: two files
     may use the same name."""
+
     def __init__(self, name, **members):
         self.name = name
         for keyword in KEYWORDS:
@@ -54,15 +55,20 @@ def read_mtl(path, texture_folder, files):
         elif keyword in NUMBERS:
             numbers = words[2:] if words[1:2] == ["-halo"] else words[1:]  # it has no effect
             count = NUMBERS[keyword]
-            statements[-1]["Tf" if keyword == "Kt" else keyword] = to_floats(numbers * count if len(numbers) == 1 else numbers, count)
+            statements[-1]["Tf" if keyword == "Kt" else keyword] = to_floats(
+                numbers * count if len(numbers) == 1 else numbers, count
+            )
         elif keyword == "map_Kd":
             name = name_after_keyword(line)
             statements[-1]["map_Kd"] = words[-1] if name.startswith("-") else name  # options have no effect
 
     materials = {}
     for stated in statements:
-        members = {keyword.member: stated[keyword.name] if keyword.count == 3 else float(stated[keyword.name][0])
-                   for keyword in KEYWORDS if keyword.member and keyword.name in stated}
+        members = {
+            keyword.member: stated[keyword.name] if keyword.count == 3 else float(stated[keyword.name][0])
+            for keyword in KEYWORDS
+            if keyword.member and keyword.name in stated
+        }
         material = Material(stated["newmtl"], **members)
         if "map_Kd" in stated:
             material.diffuse_albedo = stated.get("Kd", np.ones(3))

@@ -6,7 +6,9 @@ try:
     import mitsuba as mi
     import numpy as np
 except ImportError as error:
-    raise UserError(f"{error}: this needs Mitsuba 3: `pip install mitsuba`, in a virtual environment that is active here") from None
+    raise UserError(
+        f"{error}: this needs Mitsuba 3: `pip install mitsuba`, in a virtual environment that is active here"
+    ) from None
 
 MAX_BATCH_PATHS = 1 << 24  # so that a batch fits into memory and ends in reasonable time
 
@@ -51,8 +53,9 @@ def make_mesh(surface, unit, own_normals, media):
             properties[side] = media(medium)
     count = len(surface.positions)
     has_own_normals = own_normals and surface.normals is not None and not material.emission.any()
-    mesh = mi.Mesh(material.name, 3 * count, count, props=properties, has_vertex_normals=has_own_normals,
-                   has_vertex_texcoords=True)
+    mesh = mi.Mesh(
+        material.name, 3 * count, count, props=properties, has_vertex_normals=has_own_normals, has_vertex_texcoords=True
+    )
     if surface.normals is not None and not own_normals:
         mesh.add_attribute("vertex_shading_normal", 3, surface.normals.astype(np.float32).ravel())
     buffers = mi.traverse(mesh)
@@ -83,13 +86,21 @@ def make_light_probe(scene):
 def make_medium(medium, unit):
     if "absorption" in medium:
         strongest = medium["absorption"].max()
-        return {"type": "homogeneous", "albedo": 0.0, "scale": float(strongest / unit),
-                "sigma_t": colour(medium["absorption"] / strongest)}
+        return {
+            "type": "homogeneous",
+            "albedo": 0.0,
+            "scale": float(strongest / unit),
+            "sigma_t": colour(medium["absorption"] / strongest),
+        }
     content = {"albedo": colour(np.broadcast_to(medium["albedo"], 3)), "phase": {"type": "hg", "g": medium["anisotropy"]}}
     if "density" not in medium:
         return {"type": "homogeneous", "sigma_t": medium["extinction"] / unit, **content}
-    return {"type": "heterogeneous", "scale": medium["extinction"] / unit, **content,
-            "sigma_t": {"type": "gridvolume", "filename": str(medium["density"]), "to_world": make_box(medium, unit)}}
+    return {
+        "type": "heterogeneous",
+        "scale": medium["extinction"] / unit,
+        **content,
+        "sigma_t": {"type": "gridvolume", "filename": str(medium["density"]), "to_world": make_box(medium, unit)},
+    }
 
 
 def make_box(medium, unit):
@@ -114,12 +125,21 @@ def make_camera(scene, width, height, unit, sampler):
         focus = float(scene.camera["focus_distance"]) or np.linalg.norm(target - position) / unit
         lens = {"type": "thinlens", "aperture_radius": unit * diameter / 2, "focus_distance": unit * focus}
     return {
-        **lens, "fov": float(scene.camera["vertical_fov"]), "fov_axis": "y",
-        "near_clip": 1e-2, "far_clip": 1e8,
+        **lens,
+        "fov": float(scene.camera["vertical_fov"]),
+        "fov_axis": "y",
+        "near_clip": 1e-2,
+        "far_clip": 1e8,
         "to_world": mi.ScalarTransform4f().look_at(list(position), list(target), list(up)),
         "sampler": {"type": sampler},
-        "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
-                 "component_format": "float32", "rfilter": {"type": "box"}},
+        "film": {
+            "type": "hdrfilm",
+            "width": width,
+            "height": height,
+            "pixel_format": "rgb",
+            "component_format": "float32",
+            "rfilter": {"type": "box"},
+        },
     }
 
 
@@ -129,8 +149,11 @@ def make_mitsuba_scene(scene, width, height, max_path_length, own_normals=False,
     has_media = scene.fog or any(surface.inside or surface.outside for surface in scene.surfaces)
     integrator = "volpath" if has_media else "path"
     unit = unit_length(scene)
-    content = {"type": "scene", "sensor": make_camera(scene, width, height, unit, sampler),
-               "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30}}
+    content = {
+        "type": "scene",
+        "sensor": make_camera(scene, width, height, unit, sampler),
+        "integrator": {"type": integrator, "max_depth": max_path_length + 1, "rr_depth": 1 << 30},
+    }
     made = {}
 
     def media(medium):

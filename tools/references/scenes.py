@@ -41,7 +41,9 @@ class SourceFiles:
 @dataclass
 class Surface:
     """All triangles of one material between two media in world space: arrays [triangle, corner], counter-clockwise seen from the
-    front. A medium has extinction, albedo, anisotropy, and with a grid density (its file) and box; that of glass has absorption."""
+    front. A medium has extinction, albedo, anisotropy, and with a grid density (its file) and box; that of glass has absorption.
+    """
+
     material: Material
     positions: np.ndarray
     normals: np.ndarray | None  # to be interpolated, then normalised; None to use the triangles' own
@@ -89,7 +91,9 @@ def find_bodies(path, fog, meshes, placements, positions, absorptions):
         for triangles, is_closed in ((bounding[part], is_closed) for part, is_closed in parts):
             content = medium or absorptions[id(mesh.materials[triangles[0]])]
             if not medium and len({tuple(mesh.materials[i].absorption) for i in triangles}) > 1:
-                raise UserError(f"{path}: references with media know one Tf in a piece of glass, {mesh.path} has several: use one")
+                raise UserError(
+                    f"{path}: references with media know one Tf in a piece of glass, {mesh.path} has several: use one"
+                )
             bodies.append(Body(first + triangles, content, is_open, is_closed, positions[first + triangles]))
         first += len(mesh.materials)
     return Bodies(path, fog, positions, bodies)
@@ -106,8 +110,11 @@ def place_meshes(path, meshes, placements, fog):
         arrays = (mesh.positions @ linear.T + matrix[:3, 3], mesh.normals @ np.linalg.inv(linear), mesh.texture_coordinates)
         parts.append([array[:, order] for array in arrays])
     all_positions, all_normals, all_coordinates = (np.concatenate(arrays) for arrays in zip(*parts))
-    all_materials = [OPEN if medium and medium["is_open"] else material
-                     for index, _, medium in placements for material in meshes[index].materials]
+    all_materials = [
+        OPEN if medium and medium["is_open"] else material
+        for index, _, medium in placements
+        for material in meshes[index].materials
+    ]
     owners = np.repeat(range(len(parts)), [len(positions) for positions, _, _ in parts])
     all_positions, is_kept = resolve_lamps(path, all_positions, all_materials, owners)
 
@@ -181,8 +188,12 @@ def framing_camera(meshes, placements):
     low, high = np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
     centre, radius, fov = (low + high) / 2, np.linalg.norm(high - low) / 2, 45
     direction = np.array([0, 0.25, 1]) / math.hypot(0.25, 1)
-    return {"position": list(centre + radius / math.sin(math.radians(fov / 2)) * direction),
-            "target": list(centre), "up": [0, 1, 0], "vertical_fov": fov}
+    return {
+        "position": list(centre + radius / math.sin(math.radians(fov / 2)) * direction),
+        "target": list(centre),
+        "up": [0, 1, 0],
+        "vertical_fov": fov,
+    }
 
 
 def read_description(path, files):
@@ -195,8 +206,21 @@ def read_scene(path):
     path = Path(path)
     files = SourceFiles()
     try:
-        root = only(path, read_description(path, files), "description", "meshes", "camera", "background", "fog", "specular",
-                    "multiple_scattering", "width", "height", "samples", "max_path_length")
+        root = only(
+            path,
+            read_description(path, files),
+            "description",
+            "meshes",
+            "camera",
+            "background",
+            "fog",
+            "specular",
+            "multiple_scattering",
+            "width",
+            "height",
+            "samples",
+            "max_path_length",
+        )
         meshes, indices, placements = [], {}, []
         for entry in root["meshes"]:
             file, materials = path.parent / entry["file"], "materials" in entry and path.parent / entry["materials"]
@@ -229,13 +253,32 @@ def read_scene(path):
         radiance = background.get("intensity", 1) if light_probe else background.get("radiance", 0)
         if path.suffix.lower() == ".obj" and not any(s.material.emission.any() for s in surfaces):
             radiance = 1  # a bare mesh without lights is lit by a white sky
-        camera = {"up": [0, 1, 0], "vertical_fov": 45, "aperture_diameter": 0, "focus_distance": 0,
-                  **(root.get("camera") or framing_camera(meshes, placements))}
-        camera = {key: np.asarray(value, float) for key, value in
-                  only(path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance").items()}
+        camera = {
+            "up": [0, 1, 0],
+            "vertical_fov": 45,
+            "aperture_diameter": 0,
+            "focus_distance": 0,
+            **(root.get("camera") or framing_camera(meshes, placements)),
+        }
+        camera = {
+            key: np.asarray(value, float)
+            for key, value in only(
+                path, camera, "position", "target", "up", "vertical_fov", "aperture_diameter", "focus_distance"
+            ).items()
+        }
         camera_medium = bodies and bodies.medium_at(camera["position"])
-        return Scene(surfaces, camera, fog, camera_medium, triple(radiance), light_probe,
-                     float(background.get("rotation_degrees", 0)), root.get("width", 512), root.get("height", 512),
-                     root.get("max_path_length", 8), f"{files.hash:x}")
+        return Scene(
+            surfaces,
+            camera,
+            fog,
+            camera_medium,
+            triple(radiance),
+            light_probe,
+            float(background.get("rotation_degrees", 0)),
+            root.get("width", 512),
+            root.get("height", 512),
+            root.get("max_path_length", 8),
+            f"{files.hash:x}",
+        )
     except (LookupError, TypeError, ValueError, np.linalg.LinAlgError) as error:
         raise UserError(f"{path}: cannot be read: {error!r}; a chapter says where the mistake is: ./lab run 1 {path}") from None

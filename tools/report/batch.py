@@ -58,8 +58,14 @@ class Worker:
     def __init__(self, program):
         self.program = program
         self.errors = tempfile.TemporaryFile()  # nobody reads a pipe meanwhile, so it could fill up
-        self.process = subprocess.Popen([*program, "--batch"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors,
-                                        cwd=ROOT, start_new_session=True)
+        self.process = subprocess.Popen(
+            [*program, "--batch"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self.errors,
+            cwd=ROOT,
+            start_new_session=True,
+        )
         self.count = 0  # lines so far
 
     def run(self, arguments, timeout):

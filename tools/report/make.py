@@ -18,8 +18,12 @@ def new_parser(name, description):
     parser = Parser(name, description)
     parser.add_argument("words", nargs="*", metavar="SCENE or CHAPTER", help="default: all")
     add_device_options(parser)
-    parser.add_argument("--seconds", type=number(float, 0.01), default=4.0,
-                        help="of rendering for each chapter and scene, all repetitions together; default: 4")
+    parser.add_argument(
+        "--seconds",
+        type=number(float, 0.01),
+        default=4.0,
+        help="of rendering for each chapter and scene, all repetitions together; default: 4",
+    )
     parser.add_argument("--repetitions", type=number(int, 1), default=5, help="runs with seeds 1, 2, …; default: 5")
     parser.add_argument("--output", type=Path, default=ROOT / "output/report", metavar="FOLDER", help="default: output/report")
     return parser

@@ -11,7 +11,19 @@ import time
 from datetime import datetime
 from pathlib import Path
 
-from project import CHAPTERS, ROOT, UserError, commit, failure_text, program_file, read_json, rendered_description, run_program, show_progress, write_json
+from project import (
+    CHAPTERS,
+    ROOT,
+    UserError,
+    commit,
+    failure_text,
+    program_file,
+    read_json,
+    rendered_description,
+    run_program,
+    show_progress,
+    write_json,
+)
 from references.images import averaged, read_reference, read_rgb, rel_mse
 from report.sources import digest, files_of
 
@@ -35,10 +47,26 @@ def new_case(scene_file, reference_file, name, program, options=(), is_peer=Fals
     that resolution, and is compared with the reference after averaging blocks of scale x scale pixels. `variables` are NAME=VALUE of
     the program's environment. The program of a peer is a command that takes a chapter's arguments."""
     case = {
-        "scene": reference_file.stem if reference_file else scene_file.stem, "scene_file": relative(scene_file),
-        "reference_file": None, "reference": None, "width": 128, "height": 128, "max_path_length": None, "scale": 1, "case": name,
-        "program": program, "options": " ".join(options), "is_peer": is_peer, "backend": None, "variables": [], "note": "",
-        "samples": None, "paths_per_sample": 1, "refused": None, "runs": [], "pictures": {},
+        "scene": reference_file.stem if reference_file else scene_file.stem,
+        "scene_file": relative(scene_file),
+        "reference_file": None,
+        "reference": None,
+        "width": 128,
+        "height": 128,
+        "max_path_length": None,
+        "scale": 1,
+        "case": name,
+        "program": program,
+        "options": " ".join(options),
+        "is_peer": is_peer,
+        "backend": None,
+        "variables": [],
+        "note": "",
+        "samples": None,
+        "paths_per_sample": 1,
+        "refused": None,
+        "runs": [],
+        "pictures": {},
     }
     if reference_file:
         reference = read_reference(reference_file)
@@ -47,18 +75,29 @@ def new_case(scene_file, reference_file, name, program, options=(), is_peer=Fals
         if scale > 1:
             case["scene"] += f"_{scale * width}"
         case |= {
-            "reference_file": relative(reference_file), "width": scale * width, "height": scale * height, "scale": scale,
+            "reference_file": relative(reference_file),
+            "width": scale * width,
+            "height": scale * height,
+            "scale": scale,
             "max_path_length": int(reference.attributes["max_path_length"]),
             "reference": {
-                "scene_hash": reference.attributes["scene_hash"], "mean": reference.mean.mean(axis=(0, 1)).tolist(),
+                "scene_hash": reference.attributes["scene_hash"],
+                "mean": reference.mean.mean(axis=(0, 1)).tolist(),
                 "variance": (reference.variance.sum(axis=(0, 1)) / (width * height) ** 2).tolist(),
-                "freedom": reference.freedom, "rel_mse_deviation": reference.rel_mse_deviation}}
+                "freedom": reference.freedom,
+                "rel_mse_deviation": reference.rel_mse_deviation,
+            },
+        }
     return case
 
 
 def report_cases(scenes, chapters, is_large=False):
     """Cases of all chapters for pairs (scene file, reference file)."""
-    return [new_case(scene, reference, f"chapter {number}", CHAPTERS[number], is_large=is_large) for scene, reference in scenes for number in chapters]
+    return [
+        new_case(scene, reference, f"chapter {number}", CHAPTERS[number], is_large=is_large)
+        for scene, reference in scenes
+        for number in chapters
+    ]
 
 
 # ---------------------------------------------------------------------------------------------- programs
@@ -88,8 +127,10 @@ def run_case(case, settings, arguments, run=run_once):
         try:
             process = run(program, command, limit)
         except subprocess.TimeoutExpired:
-            raise UserError(f"{case['scene']}, {case['case']}: ended after {limit:g} s: does each loop of the shader end, and each path? "
-                            "On a slow machine allow more by --time-limit") from None
+            raise UserError(
+                f"{case['scene']}, {case['case']}: ended after {limit:g} s: does each loop of the shader end, and each path? "
+                "On a slow machine allow more by --time-limit"
+            ) from None
         seconds = time.perf_counter() - started
         if process.returncode != 0:
             error = failure_text(process)
@@ -101,8 +142,10 @@ def run_case(case, settings, arguments, run=run_once):
         if case["scale"] > 1:
             measure_large(case, report["rows"], arguments[arguments.index("--output") + 1])
     if case["reference"] and report["scene_hash"] != case["reference"]["scene_hash"]:
-        raise UserError(f"{case['reference_file']}: is of another version of {case['scene_file']}: "
-                        f"render it again with ./lab reference {case['scene_file']}")
+        raise UserError(
+            f"{case['reference_file']}: is of another version of {case['scene_file']}: "
+            f"render it again with ./lab reference {case['scene_file']}"
+        )
     return report | {"command_seconds": seconds - report.get("discarded_seconds", 0)}
 
 
@@ -115,15 +158,19 @@ def measure_large(case, rows, picture):
 
 def driver_of(program, device):
     """Kind of the device, Vulkan's version and the driver."""
-    found = re.search(rf"^ *\d+ +{re.escape(device)} \((.*)\)$", run_program([program_file(program), "--list-devices"]).stdout, re.MULTILINE)
+    found = re.search(
+        rf"^ *\d+ +{re.escape(device)} \((.*)\)$", run_program([program_file(program), "--list-devices"]).stdout, re.MULTILINE
+    )
     return found[1] if found else "unknown"
 
 
 def digest_of_sources(cases):
     """A digest of all sources that affect a run: when they change, a measurement starts over."""
     references = [ROOT / case["reference_file"] for case in cases if case["reference_file"]]
-    return digest([*files_of(["common", "shaders", "assets"]), *ROOT.glob("chapters/*/*.glsl"), *references],
-                  "".join(map(rendered_description, CHAPTERS.values())))
+    return digest(
+        [*files_of(["common", "shaders", "assets"]), *ROOT.glob("chapters/*/*.glsl"), *references],
+        "".join(map(rendered_description, CHAPTERS.values())),
+    )
 
 
 # ---------------------------------------------------------------------------------------------- measuring
@@ -162,8 +209,11 @@ class Measurement:
     def measure(self):
         """Performs all steps that the record lacks."""
         cases, steps = self.record["cases"], list(self.steps())
-        print(f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each. "
-              "Ctrl-C keeps what is there, and the same command goes on.", file=sys.stderr)
+        print(
+            f"{len(cases)} cases, {self.record['settings']['repetitions']} runs of {self.run_seconds():.2g} s each. "
+            "Ctrl-C keeps what is there, and the same command goes on.",
+            file=sys.stderr,
+        )
         open_steps = [step for step in steps if self.is_open(*step)]
         started = time.monotonic()
         for done, (do, case, seed) in enumerate(open_steps, 1):
@@ -202,8 +252,11 @@ class Measurement:
             environment["peer"] = report["device"]
         elif "device" not in environment:
             environment |= {
-                "device": report["device"], "driver": driver_of(case["program"], report["device"]), "commit": commit(),
-                "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M")}
+                "device": report["device"],
+                "driver": driver_of(case["program"], report["device"]),
+                "commit": commit(),
+                "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"),
+            }
 
     def repeat(self, case, seed):
         case["runs"].append(self.render(case, seed, case["samples"], "equal_time" if seed == 1 else None))

@@ -67,6 +67,7 @@ def log_interval(value, parts):
 class Series(NamedTuple):
     """Errors of a case, or quantities proportional to them, one per run. `shift` is the standard deviation of the reference's
     contribution, relative to their mean. It is common to all runs, and correlated among the cases of a scene."""
+
     numbers: dict  # seed -> number
     shift: float = 0.0
 
@@ -200,11 +201,17 @@ def biases(runs, reference, comparisons):
     if len(counts) < 2:
         return [{"value": value, "half_width": None, "detectable": None, "is_biased": False} for value in values.tolist()]
     freedom, level = len(counts) - 1, FALSE_ALARMS / comparisons
-    parts = [(counts @ (means - mean) ** 2 / freedom / samples / scale**2, freedom),
-             (np.array(reference["variance"]) / scale**2, reference["freedom"]), (ROUNDING**2, KNOWN)]
-    columns = {"value": values, "half_width": half_width(parts),
-               "detectable": half_width(parts, lambda nu: detectable_shift(level, nu)),
-               "is_biased": np.abs(values) > half_width(parts, lambda nu: two_sided(1 - level, nu))}
+    parts = [
+        (counts @ (means - mean) ** 2 / freedom / samples / scale**2, freedom),
+        (np.array(reference["variance"]) / scale**2, reference["freedom"]),
+        (ROUNDING**2, KNOWN),
+    ]
+    columns = {
+        "value": values,
+        "half_width": half_width(parts),
+        "detectable": half_width(parts, lambda nu: detectable_shift(level, nu)),
+        "is_biased": np.abs(values) > half_width(parts, lambda nu: two_sided(1 - level, nu)),
+    }
     return [dict(zip(columns, row)) for row in zip(*(column.tolist() for column in columns.values()))]
 
 
@@ -225,12 +232,19 @@ def summarize_case(case, base, comparisons):
     """The numbers of a case for the page; error × time is relative to the case `base`."""
     rows, pixels = last_rows(case["runs"]), case["width"] * case["height"]
     summary = {key: case[key] for key in ("case", "is_peer", "program", "options", "backend", "note", "paths_per_sample")}
-    summary |= {"runs": len(rows), "samples": rows[0]["samples"], "seconds": mean_of(rows, "seconds"),
-                "device_seconds": mean_of(rows, "device_seconds"), "rays": mean_of(rows, "rays"),
-                "error": errors(case).interval(), "curve": curve(case),
-                "slope_samples": slope(case, "samples"), "slope_seconds": slope(case, "seconds")}
+    summary |= {
+        "runs": len(rows),
+        "samples": rows[0]["samples"],
+        "seconds": mean_of(rows, "seconds"),
+        "device_seconds": mean_of(rows, "device_seconds"),
+        "rays": mean_of(rows, "rays"),
+        "error": errors(case).interval(),
+        "curve": curve(case),
+        "slope_samples": slope(case, "samples"),
+        "slope_seconds": slope(case, "seconds"),
+    }
     samples = summary["samples"] * pixels
-    summary["error_of_one_sample"] = summary["samples"] * case["scale"]**2 * errors(case).mean  # of a pixel of the reference
+    summary["error_of_one_sample"] = summary["samples"] * case["scale"] ** 2 * errors(case).mean  # of a pixel of the reference
     summary["samples_per_second"] = samples / summary["seconds"]
     summary["paths_per_second"] = case["paths_per_sample"] * summary["samples_per_second"]
     if summary["rays"]:
@@ -254,13 +268,22 @@ def summarize(record):
         cases = [case for case in record["cases"] if case["scene"] == name]
         ours = [case for case in cases if case["runs"] and not case["is_peer"]]
         peers = [case for case in cases if case["runs"] and case["is_peer"]]
-        scenes.append({
-            **{key: cases[0][key] for key in ("scene", "width", "height", "scale", "max_path_length", "reference")},
-            "refused": [{"case": case["case"], "why": case["refused"]} for case in cases if case["refused"]],
-            "cases": [summarize_case(case, ours[0] if ours else case, comparisons) for case in ours + peers],
-            # How many times faster than a peer a case reaches the same error.
-            "gains": [{"case": case["case"], "peer": peer["case"],
-                       "gain": paired_ratio(errors(peer, "seconds"), errors(case, "seconds"))}
-                      for peer in peers for case in ours + peers if case is not peer],
-        })
+        scenes.append(
+            {
+                **{key: cases[0][key] for key in ("scene", "width", "height", "scale", "max_path_length", "reference")},
+                "refused": [{"case": case["case"], "why": case["refused"]} for case in cases if case["refused"]],
+                "cases": [summarize_case(case, ours[0] if ours else case, comparisons) for case in ours + peers],
+                # How many times faster than a peer a case reaches the same error.
+                "gains": [
+                    {
+                        "case": case["case"],
+                        "peer": peer["case"],
+                        "gain": paired_ratio(errors(peer, "seconds"), errors(case, "seconds")),
+                    }
+                    for peer in peers
+                    for case in ours + peers
+                    if case is not peer
+                ],
+            }
+        )
     return scenes

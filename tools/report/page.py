@@ -50,21 +50,51 @@ def overview(scenes):
         for name in names:
             case = found.get(name)
             is_biased = case and any(channel["is_biased"] for channel in case["bias"])
-            cells.append("–" if not case else ranged(case.get("error_time")) + (' <span class="bad">biased</span>' if is_biased else ""))
+            cells.append(
+                "–" if not case else ranged(case.get("error_time")) + (' <span class="bad">biased</span>' if is_biased else "")
+            )
         rows.append([f'<a href="#{escape(scene["scene"])}">{escape(scene["scene"])}</a>', *cells])
     return "<h3>Error × time, relative to the first chapter: below 1 is better</h3>" + table(["scene", *map(escape, names)], rows)
 
 
 def speed_table(scene):
-    rows = [[
-        escape(case["case"]), short(case["samples"]), ranged(case["error"], digits=3), percent_of_root(case["error"][0]),
-        short(case.get("rays_per_sample")), short(case["samples_per_second"] / 1e6), short(case["paths_per_second"] / 1e6),
-        short(case["rays_per_second"] / 1e6) if case["rays"] else "–",
-        short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
-        short(case["seconds"]), short(case["device_seconds"]), ranged(case["slope_samples"]), ranged(case["slope_seconds"]),
-        ranged(case.get("error_time")), ranged(case.get("error_device_time"))] for case in scene["cases"]]
-    head = ["", "samples", "error", "its root", "rays per sample", "Msamples/s", "Mpaths/s", "Mrays/s", "Mrays/s of device time", "wall s", "device s",
-            "slope against samples", "against seconds", "error × time", "error × device time"]
+    rows = [
+        [
+            escape(case["case"]),
+            short(case["samples"]),
+            ranged(case["error"], digits=3),
+            percent_of_root(case["error"][0]),
+            short(case.get("rays_per_sample")),
+            short(case["samples_per_second"] / 1e6),
+            short(case["paths_per_second"] / 1e6),
+            short(case["rays_per_second"] / 1e6) if case["rays"] else "–",
+            short(case["rays_per_device_second"] / 1e6) if case["rays"] else "–",
+            short(case["seconds"]),
+            short(case["device_seconds"]),
+            ranged(case["slope_samples"]),
+            ranged(case["slope_seconds"]),
+            ranged(case.get("error_time")),
+            ranged(case.get("error_device_time")),
+        ]
+        for case in scene["cases"]
+    ]
+    head = [
+        "",
+        "samples",
+        "error",
+        "its root",
+        "rays per sample",
+        "Msamples/s",
+        "Mpaths/s",
+        "Mrays/s",
+        "Mrays/s of device time",
+        "wall s",
+        "device s",
+        "slope against samples",
+        "against seconds",
+        "error × time",
+        "error × device time",
+    ]
     return table(head, rows)
 
 
@@ -82,14 +112,20 @@ def peer_tables(scene):
     gains = {(gain["case"], gain["peer"]): gain["gain"] for gain in scene["gains"]}
     rows = [[escape(case["case"]), *(ranged(gains[case["case"], peer]) for peer in peers)] for case in ours]
     best = max(ours, key=lambda case: gains[case["case"], peers[0]][0] or 0)
-    starts = [[escape(case["case"]), ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])] for case in scene["cases"]]
+    starts = [
+        [escape(case["case"]), ranged(case["seconds_to_target"]), ranged(case["start_up_seconds"])] for case in scene["cases"]
+    ]
     notes = "".join(f"<p>{escape(case['case'])}: {escape(case['note'])}.</p>" for case in scene["cases"] if case["note"])
     notes += "<p>What differs between the programs: see docs/results.md.</p>"
-    return ("<h3>Time to equal error: how many times faster than Mitsuba</h3>"
-            f"<p>Wall time of rendering alone; the fastest is {escape(best['case'])}.</p>" + table(["", *map(escape, peers)], rows)
-            + notes + f"<h3>Seconds from the command to {100 * TARGET_ERROR:.0f} % error</h3><p>With start-up: the process, the scene, its kernels "
-            "(which both keep from earlier runs). The error is taken to fall as 1 / samples beyond what was rendered.</p>"
-            + table(["", "seconds", "of which start-up"], starts))
+    return (
+        "<h3>Time to equal error: how many times faster than Mitsuba</h3>"
+        f"<p>Wall time of rendering alone; the fastest is {escape(best['case'])}.</p>"
+        + table(["", *map(escape, peers)], rows)
+        + notes
+        + f"<h3>Seconds from the command to {100 * TARGET_ERROR:.0f} % error</h3><p>With start-up: the process, the scene, its kernels "
+        "(which both keep from earlier runs). The error is taken to fall as 1 / samples beyond what was rendered.</p>"
+        + table(["", "seconds", "of which start-up"], starts)
+    )
 
 
 def picture_rows(record, name, folder):
@@ -106,14 +142,18 @@ def picture_rows(record, name, folder):
             row = case["pictures"][kind]
             radiance = averaged(read_rgb(folder / row["file"]), case["scale"])
             caption = f"{row['samples']} samples, {short(row['seconds'])} s, error {percent_of_root(row['rel_mse'])}"
-            figures.append(f'<figure><img src="{picture(radiance)}" alt="{escape(case["case"])}">'
-                           f'<img src="{difference_picture(radiance, reference)}" alt="difference">'
-                           f"<b>{escape(case['case'])}</b><br>{caption}</figure>")
+            figures.append(
+                f'<figure><img src="{picture(radiance)}" alt="{escape(case["case"])}">'
+                f'<img src="{difference_picture(radiance, reference)}" alt="difference">'
+                f"<b>{escape(case['case'])}</b><br>{caption}</figure>"
+            )
         if len(figures) > 1:
             parts.append(f'<h3>{title}</h3><div class="pictures">{"".join(figures)}</div>')
     if parts:
-        parts.append(f"<p><small>Lower pictures: difference of luminance from the reference × {DIFFERENCE_FACTOR}, relative to the reference's "
-                     "mean; red is too bright, blue too dark. Where one sample has less error than the noisiest chapter, one was taken.</small></p>")
+        parts.append(
+            f"<p><small>Lower pictures: difference of luminance from the reference × {DIFFERENCE_FACTOR}, relative to the reference's "
+            "mean; red is too bright, blue too dark. Where one sample has less error than the noisiest chapter, one was taken.</small></p>"
+        )
     return "".join(parts)
 
 
@@ -124,8 +164,10 @@ def scene_section(record, scene, folder):
         styles[case["case"]] = style(case, number, peers)
         peers += case["is_peer"]
     refused = "".join(f"<li>{escape(item['case'])} does not render it: {escape(item['why'])}</li>" for item in scene["refused"])
-    text = (f'<h2 id="{escape(name)}">{escape(name)}</h2><p>{scene["width"]} × {scene["height"]} pixels, paths of up to '
-            f'{scene["max_path_length"]} bounces.</p>' + (f"<ul>{refused}</ul>" if refused else ""))
+    text = (
+        f'<h2 id="{escape(name)}">{escape(name)}</h2><p>{scene["width"]} × {scene["height"]} pixels, paths of up to '
+        f'{scene["max_path_length"]} bounces.</p>' + (f"<ul>{refused}</ul>" if refused else "")
+    )
     if scene["cases"]:
         text += plot_errors(scene, styles) + speed_table(scene) + bias_table(scene) + peer_tables(scene)
     return text + picture_rows(record, name, folder)
@@ -141,15 +183,25 @@ def page(record, scenes, folder):
     settings, environment = record["settings"], record["environment"]
     backends = sorted({case["backend"] for case in record["cases"] if case["backend"] and not case["is_peer"]})
     facts = {
-        "device": environment.get("device"), "driver": environment.get("driver"), "backend": ", ".join(backends),
-        "compared with": environment.get("peer"), "commit": environment.get("commit"), "date": environment.get("date"),
+        "device": environment.get("device"),
+        "driver": environment.get("driver"),
+        "backend": ", ".join(backends),
+        "compared with": environment.get("peer"),
+        "commit": environment.get("commit"),
+        "date": environment.get("date"),
         "settings": f"{settings['repetitions']} interleaved runs of about {settings['seconds'] / settings['repetitions']:.2g} s for each "
-                    f"chapter and scene, seeds 1 to {settings['repetitions']}"}
-    lines = table(["", ""], [[f"<b>{key}</b>", f"{escape(str(value))}"] for key, value in facts.items() if value]).replace("<td>", '<td class="text">')
+        f"chapter and scene, seeds 1 to {settings['repetitions']}",
+    }
+    lines = table(["", ""], [[f"<b>{key}</b>", f"{escape(str(value))}"] for key, value in facts.items() if value]).replace(
+        "<td>", '<td class="text">'
+    )
     body = "".join(scene_section(record, scene, folder) for scene in scenes)
     percents = {"confidence": CONFIDENCE, "false_alarms": FALSE_ALARMS, "power": POWER}
-    return TEMPLATE.substitute(facts=progress_note(record) + lines, scenes=overview(scenes) + body,
-                               **{name: f"{100 * value:.0f}" for name, value in percents.items()})
+    return TEMPLATE.substitute(
+        facts=progress_note(record) + lines,
+        scenes=overview(scenes) + body,
+        **{name: f"{100 * value:.0f}" for name, value in percents.items()},
+    )
 
 
 def write_report(record, folder):

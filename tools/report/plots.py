@@ -52,8 +52,14 @@ def plot_errors(scene, styles):
             x, y = [point[key] for point in points], [point["error"] for point in points]
             axis.plot(x, [error[0] for error in y], label=case["case"], markersize=5, linewidth=1.8, **styles[case["case"]])
             if y and y[0][1]:
-                axis.fill_between(x, [error[1] for error in y], [error[2] for error in y], alpha=0.2, linewidth=0,
-                                  color=styles[case["case"]]["color"])
+                axis.fill_between(
+                    x,
+                    [error[1] for error in y],
+                    [error[2] for error in y],
+                    alpha=0.2,
+                    linewidth=0,
+                    color=styles[case["case"]]["color"],
+                )
         style_axis(axis, xscale="log", yscale="log", xlabel=label)
     axes[0].set_ylabel("error (rel_mse)")
     root = axes[1].secondary_yaxis("right", functions=(lambda e: 100 * np.sqrt(np.maximum(e, 0)), lambda e: (e / 100) ** 2))
@@ -70,14 +76,13 @@ def svg_text(figure):
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={key: None for key in ("Creator", "Date", "Format", "Type")})
     pyplot.close(figure)
-    return re.sub(r' (width|height)="[\d.]+pt"', "", stream.getvalue()[stream.getvalue().index("<svg"):], count=2)
+    return re.sub(r' (width|height)="[\d.]+pt"', "", stream.getvalue()[stream.getvalue().index("<svg") :], count=2)
 
 
 def png_uri(pixels):
     """A data URI for an array [row, column, channel] of numbers in [0, 1]."""
     stream = io.BytesIO()
-    image.imsave(stream, (255 * np.clip(pixels, 0, 1)).round().astype(np.uint8), format="png",
-                 pil_kwargs={"optimize": True})
+    image.imsave(stream, (255 * np.clip(pixels, 0, 1)).round().astype(np.uint8), format="png", pil_kwargs={"optimize": True})
     return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
 
 
@@ -129,5 +134,13 @@ def right_and_wrong(path, right, wrong):
     weaker so that only one pixel in ten is saturated."""
     difference = relative_difference(wrong, right)
     full = max(1 / DIFFERENCE_FACTOR, np.quantile(np.abs(difference), 0.9))
-    sheet(path, [[("right", encode_srgb(right)), ("wrong", encode_srgb(wrong)),
-                  ("red: too bright, blue: too dark", difference_colours(difference, full))]])
+    sheet(
+        path,
+        [
+            [
+                ("right", encode_srgb(right)),
+                ("wrong", encode_srgb(wrong)),
+                ("red: too bright, blue: too dark", difference_colours(difference, full)),
+            ]
+        ],
+    )
