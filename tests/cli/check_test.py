@@ -6,21 +6,17 @@ import os
 import re
 import shutil
 import unittest
-from copy import deepcopy
 from pathlib import Path
 from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
+from checking import FEW, SHADER, TECHNIQUE, Checking
 import project
-from check import command, diagnosis, grading
+from check import command, grading
 from check.formats import as_github
-from course.mistakes import planted
-from report import batch
 
 # The notebook knows the names of mistakes; the tests that ask for one need it.
 NAMES = unittest.skipUnless(project.KNOWLEDGE.exists(), "names of mistakes are in the notebook")
-SHADER = PROJECT / "chapters/03_next_event_estimation/path_trace.glsl"
-TECHNIQUE = SHADER.with_name("direct_light.glsl")
 ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
     float sum = 0.0;
     while (sum >= 0.0) sum = abs(sum) + get_random_numbers(seed).x;
@@ -28,71 +24,19 @@ ENDLESS = """vec3 path_trace(Ray ray, inout uvec2 seed) {
 }
 """
 NO_UTF8 = [os.fsdecode(name) for name in (b"m\xfcller.glsl", b"m\xfdller.glsl")]  # as in archives from elsewhere
-FEW = (3, "--runs", 5, "--samples", 4)
 # A chapter that logs its command lines.
 NOTING = """#!/bin/sh
 tee -a '{notes}' | '{program}' "$@"
 """
 
 
-class Checking:
-    """The command in this process."""
-
-    judged = {}  # results of judge(), shared by all tests
-
-    def setUp(self):
-        super().setUp()
-        self.judge = mock.Mock(side_effect=self.judge_once)
-        # One render at a time, so that the others need not compile its shader as well.
-        for where, what, stand_in in ((command, "judge", self.judge), (command, "diagnose", self.diagnose_once), (batch, "JOBS", 1)):
-            patch = mock.patch.object(where, what, stand_in)
-            patch.start()
-            self.addCleanup(patch.stop)
-
-    def judge_once(self, submission, settings, watch, ends_early):  # noqa: ARG002 (the next format may need all runs)
-        """judge(), but renders a shader only once for all formats in which the command reports the same verdict."""
-        key = (submission.file.read_bytes(), *grading.SCENES[submission.chapter][1], *(settings[name] for name in ("runs", "samples", "first_seed")))
-        if key not in self.judged:
-            early = []
-            self.judged[key] = (*grading.judge(submission, settings, watch=lambda cases: early.append(deepcopy(cases))), early)
-        result, pictures, early = deepcopy(self.judged[key])
-        for cases in early:
-            watch(cases)
-        return result | {"file": submission.name}, pictures
-
-    def diagnose_once(self, submission, settings, is_correct):
-        key = (submission.file.read_bytes(), is_correct, settings["first_seed"])
-        if key not in self.judged:
-            self.judged[key] = diagnosis.diagnose(submission, settings, is_correct)
-        return deepcopy(self.judged[key])
-
-    def check(self, *arguments):
-        """Exit code, standard output and standard error of the command, run in this process."""
-        return self.run_here(command.main, "--backend", "compute", *arguments)
-
-    def check_few(self, *arguments):
-        code, out, err = self.check(*FEW, "--json", *arguments)
-        self.assertIn(code, (0, 1), err)
-        return code, json.loads(out)
-
-    def in_one_scene(self):
-        """For tests whose subject shows just as well in the first scene alone."""
-        return mock.patch.dict(grading.SCENES, {3: (4, ["check_room_2"])})
-
-    def wrong(self):
-        """A file with a mistake."""
-        return self.write("mine.glsl", TECHNIQUE.read_text(encoding="utf-8").replace("/ (distance * distance)", "/ distance"))
-
-    def planted(self, chapter, find, replace):
-        """Name of a file with one of a chapter's own shaders, changed in one place."""
-        return self.write("mine.glsl", planted(chapter, {"name": "mine", "find": find, "replace": replace}).text)
-
-
 class CheckTest(Checking, ProgramTest):
     @NAMES
     def test_the_process_ends_with_the_verdict(self):
-        for arguments, expected, early, words in (((), 0, "no picture is wrong", "correct +nothing differs, "),
-                                                  ((self.wrong(), "--teacher"), 1, "is too bright", "biased +distance-not-squared: ")):
+        for arguments, expected, early, words in (
+            ((), 0, "no picture is wrong", "correct +nothing differs, "),
+            ((self.wrong(), "--teacher"), 1, "is too bright", "biased +distance-not-squared: "),
+        ):
             code, out, err = self.run_tool("check", 3, "--runs", 5, "--samples", 1, "--backend", "compute", *arguments)
             self.assertEqual(code, expected, err)
             self.assertRegex(err, rf"(?m)^so far +[^\n]*{early}")
@@ -136,8 +80,11 @@ class CheckTest(Checking, ProgramTest):
         found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "is_noisy": False}
         for is_confirmed, form, runs in ((True, "--json", grading.EARLY_RUNS), (False, "--json", 6), (True, "--gradescope", 6)):
             results = []
-            with (mock.patch.object(command, "judge", lambda *a, **b: results.append(grading.judge(*a, **b)) or results[-1]),
-                  mock.patch.object(command, "diagnose", return_value=found | {"is_beyond_doubt": is_confirmed}), self.in_one_scene()):
+            with (
+                mock.patch.object(command, "judge", lambda *a, **b: results.append(grading.judge(*a, **b)) or results[-1]),
+                mock.patch.object(command, "diagnose", return_value=found | {"is_beyond_doubt": is_confirmed}),
+                self.in_one_scene(),
+            ):
                 self.check(3, "--runs", 6, "--samples", 4, form, self.wrong())
             (result, (picture,)), first = results[-1], results[0][1][0]
             self.assertEqual((result["verdict"], result["runs"], len(results)), ("biased", runs, 1 if is_confirmed else 2))
@@ -148,10 +95,13 @@ class CheckTest(Checking, ProgramTest):
         facts = re.findall(r"(?m)^seen +(.*)", short)
         self.assertTrue(1 <= len(facts) <= 5 and max(map(len, facts)) <= 100, facts)
         self.assertNotIn("check_room_2  ", short)
-        for words in ("check_room_2 +biased: mean ", "seen +light of a lamp after one bounce: wrong by a factor that follows the distance;",
-                      "right +a lamp that the camera sees$"):
+        for words in (
+            "check_room_2 +biased: mean ",
+            "seen +light of a lamp after one bounce: wrong by a factor that follows the distance;",
+            "right +a lamp that the camera sees$",
+        ):
             self.assertRegex(long, rf"(?m)^{words}")
-        self.assertTrue(long.startswith(short[:short.index("more  ")]))
+        self.assertTrue(long.startswith(short[: short.index("more  ")]))
 
     def test_the_chapters_own_noise_is_compared_render_by_render(self):
         result = json.loads(self.check(3, "--runs", 2, "--json")[1])
@@ -192,27 +142,43 @@ class CheckTest(Checking, ProgramTest):
         (self.folder / "all/gone.glsl").symlink_to("nowhere")
         self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
         grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
-        expected = {"'=1 #2, ü": "biased", "anna": "correct", "bob": "not graded", "carl": "unfinished", "dora": "biased", "gone": "not graded"}
+        expected = {
+            "'=1 #2, ü": "biased",
+            "anna": "correct",
+            "bob": "not graded",
+            "carl": "unfinished",
+            "dora": "biased",
+            "gone": "not graded",
+        }
         expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
         code, out, err = self.check(*grade_all)
         self.assertEqual(code, 2, err)
-        self.assertRegex(out, rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 8: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance")
+        self.assertRegex(
+            out,
+            rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 8: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance",
+        )
         table = self.graded()
         self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
         page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
-        self.assertEqual(sorted(re.findall(r'<img src="(.*?)"', page)),
-                         ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "carl.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"])
+        self.assertEqual(
+            sorted(re.findall(r'<img src="(.*?)"', page)),
+            ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "carl.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"],
+        )
         self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
 
         self.write("all/abe.glsl", ENDLESS)
         self.judge.reset_mock()
         self.assertEqual(self.check(*grade_all, "--time-limit", 1)[0], 2)
-        self.assertEqual([call.args[0].file.stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew")
+        self.assertEqual(
+            [call.args[0].file.stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew"
+        )
         rows = {row["submission"]: row for row in self.graded()}
         self.assertEqual({name: row["verdict"] for name, row in rows.items()}, expected | {"abe": "not graded"})
         self.assertRegex(rows["abe"]["error"], "ended after 1 s|device")
-        self.assertEqual([rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
-                         [row for row in table if row["verdict"] != "not graded"])
+        self.assertEqual(
+            [rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
+            [row for row in table if row["verdict"] != "not graded"],
+        )
 
     def test_a_folder_without_mistakes_has_no_list_of_them(self):
         self.write("all/anna.glsl", SHADER.read_bytes())
@@ -243,12 +209,15 @@ class CheckTest(Checking, ProgramTest):
 
     def test_checks_with_other_seeds_share_no_render(self):
         """Also with more runs, and in experiments: otherwise a false alarm would recur with another --seed."""
-        program = self.write(f"binaries/{SHADER.parent.name}", NOTING.format(
-            notes=self.folder / "notes", program=BINARIES / SHADER.parent.name))
+        program = self.write(
+            f"binaries/{SHADER.parent.name}", NOTING.format(notes=self.folder / "notes", program=BINARIES / SHADER.parent.name)
+        )
         program.chmod(0o755)
         seeds = []
         for seed in (0, 1):
-            with mock.patch.object(project, "BINARIES", program.parent), mock.patch.object(Checking, "judged", {}), self.in_one_scene():
+            with mock.patch.object(project, "BINARIES", program.parent), mock.patch.object(
+                Checking, "judged", {}
+            ), self.in_one_scene():
                 self.check(3, "--runs", 2 + seed, "--samples", 1, "--seed", seed, "--time-limit", 100)
             notes = (self.folder / "notes").read_text()
             (self.folder / "notes").unlink()
@@ -271,19 +240,26 @@ class CheckTest(Checking, ProgramTest):
     def test_what_is_still_to_be_written_is_no_mistake(self):
         text = TECHNIQUE.read_text(encoding="utf-8")
         geometry = "float geometry = "
-        line = text[:text.index(geometry)].count("\n") + 1
+        line = text[: text.index(geometry)].count("\n") + 1
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
         with self.in_one_scene():
             code, result = self.check_few(file)
-        self.assertEqual((code, result["unfinished_file"], result["unfinished_line"], result["diagnosis"]), (1, str(file), line, None))
+        self.assertEqual(
+            (code, result["unfinished_file"], result["unfinished_line"], result["diagnosis"]), (1, str(file), line, None)
+        )
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
         # One path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
         text = SHADER.read_text(encoding="utf-8").replace("vec3 path_trace(", "vec3 trace_path(") + (
             "vec3 path_trace(Ray ray, inout uvec2 seed) {\n"
             "    trace_path(ray, seed);\n"
-            "    return get_random_numbers(seed).x < 0.5 ? 2.0 * trace_path(ray, seed) : vec3(0.0);\n}\n")
-        with self.in_one_scene(), mock.patch.object(command, "diagnose", return_value={"facts": [], "right": [], "mistakes": [], "fits": False, "next": None, "is_beyond_doubt": False}):
+            "    return get_random_numbers(seed).x < 0.5 ? 2.0 * trace_path(ray, seed) : vec3(0.0);\n}\n"
+        )
+        with self.in_one_scene(), mock.patch.object(
+            command,
+            "diagnose",
+            return_value={"facts": [], "right": [], "mistakes": [], "fits": False, "next": None, "is_beyond_doubt": False},
+        ):
             code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]
         self.assertEqual((code, box["verdict"]), (1, "noisy"), box["noise"])
@@ -333,8 +309,11 @@ class CheckTest(Checking, ProgramTest):
 
     def test_an_endless_loop_is_ended(self):
         """Also one outside the shader: the loop over the bounces of a path that never ends."""
-        path = self.planted(7, "get_background_radiance(path.ray.direction);\n        return false;",
-                            "get_background_radiance(path.ray.direction);\n        return true;")
+        path = self.planted(
+            7,
+            "get_background_radiance(path.ray.direction);\n        return false;",
+            "get_background_radiance(path.ray.direction);\n        return true;",
+        )
         for chapter, file in ((3, self.write("endless.glsl", ENDLESS)), (7, path)):
             code, _, err = self.run_tool("check", chapter, file, "--time-limit", 1)
             self.assertEqual(code, 2)
@@ -349,8 +328,10 @@ class CheckTest(Checking, ProgramTest):
 
 class LaterChapters_all(Checking, ProgramTest):
     def test_mistakes_at_a_turned_light_probe_above_lamps_are_found(self):
-        for find, replace in ((" - 0.5) - parameters.probe_rotation;", " - 0.5) + parameters.probe_rotation;"),
-                              ("happens(LIGHT_PROBE_PROBABILITY, seed)", "happens(0.8, seed)")):
+        for find, replace in (
+            (" - 0.5) - parameters.probe_rotation;", " - 0.5) + parameters.probe_rotation;"),
+            ("happens(LIGHT_PROBE_PROBABILITY, seed)", "happens(0.8, seed)"),
+        ):
             with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
                 code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
             self.assertEqual(code, 1, f"{replace}: {out}{err}")

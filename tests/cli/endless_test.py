@@ -6,7 +6,7 @@ import subprocess
 import time
 import unittest
 
-from debug_test import SHADER, CopiedLab
+from copied_lab import SHADER, CopiedLab
 from program import PROJECT, ProgramTest
 
 WITH_DISPLAY = PROJECT / "tests/support/with_display.sh"
@@ -37,12 +37,25 @@ class EndlessTest(CopiedLab, ProgramTest):
             self.fail(f"still running long after {number}")
 
     def test_a_signal_ends_a_render_whose_shader_does_not_end(self):
-        for backend, number, code in (("compute", signal.SIGTERM, 3), ("pipeline", signal.SIGINT, 3), ("native", signal.SIGTERM, 1)):
-            with self.subTest(backend=backend), self.start("quad.json", "--width=32", "--height=32", "--samples=2", "--headless",
-                                                           f"--backend={backend}", program=self.program) as process:
+        for backend, number, code in (
+            ("compute", signal.SIGTERM, 3),
+            ("pipeline", signal.SIGINT, 3),
+            ("native", signal.SIGTERM, 1),
+        ):
+            with self.subTest(backend=backend), self.start(
+                "quad.json",
+                "--width=32",
+                "--height=32",
+                "--samples=2",
+                "--headless",
+                f"--backend={backend}",
+                program=self.program,
+            ) as process:
                 self.assertIn(f"backend {backend}", process.stdout.readline())
                 note = process.stderr.readline()  # after some seconds
-                self.assertRegex(note, rf"\Anote: no sample for \d+ s: the device is busy, or a loop of \S+{SHADER} does not end; Ctrl-C stops")
+                self.assertRegex(
+                    note, rf"\Anote: no sample for \d+ s: the device is busy, or a loop of \S+{SHADER} does not end; Ctrl-C stops"
+                )
                 err = self.end(process, number)
                 answer = "" if backend == "native" else r"[^\n]*did not answer within 3 s: it is busy, or a loop"
                 self.assertRegex(err, rf"(?m)^error: {answer}[^\n]*nothing[^\n]*\n\Z")
@@ -51,22 +64,37 @@ class EndlessTest(CopiedLab, ProgramTest):
     def test_a_time_limit_ends_it_and_names_the_loop(self):
         for backend in ("compute", "pipeline", "native"):
             with self.subTest(backend=backend):
-                code, _, err = self.run_program("quad.json", *self.SIZE, f"--backend={backend}", "--time-limit=1", program=self.program)
+                code, _, err = self.run_program(
+                    "quad.json", *self.SIZE, f"--backend={backend}", "--time-limit=1", program=self.program
+                )
                 self.assertEqual(code, 1)
                 self.assertRegex(err, rf"\Aerror: \S+{SHADER}:3: this loop, or one around it, does not end[^\n]*\n\Z")
 
     def test_a_time_limit_waits_for_a_dispatch_that_takes_long(self):
         """As on a busy machine: each sample takes seconds, but its loop ends."""
         self.shader.write_text(BODY.replace("for (;;)", "for (uint i = 0u; i < 60000u; ++i)"), encoding="utf-8")
-        code, out, err = self.run_program("cornell_box", "--headless", "--width=128", "--height=128", "--samples=1000", "--backend=compute",
-                                          "--time-limit=0.1", program=self.program)
+        code, out, err = self.run_program(
+            "cornell_box",
+            "--headless",
+            "--width=128",
+            "--height=128",
+            "--samples=1000",
+            "--backend=compute",
+            "--time-limit=0.1",
+            program=self.program,
+        )
         self.assertEqual(code, 0, err)
         self.assertNotIn("error", err)
         self.assertRegex(out, "(?m)^samples .*stopped early")
 
     @unittest.skipUnless(shutil.which("Xvfb"), "xvfb is not installed")
     def test_the_window_closes_and_says_why_it_writes_nothing(self):
-        command = ["sh", "-c", 'exec "$0" quad.json --width=32 --height=32 --window --output=a.exr & echo $!; wait $!', self.program]
+        command = [
+            "sh",
+            "-c",
+            'exec "$0" quad.json --width=32 --height=32 --window --output=a.exr & echo $!; wait $!',
+            self.program,
+        ]
         with self.start(*command, program=WITH_DISPLAY, environment={"WAYLAND_DISPLAY": None}) as process:
             window = int(process.stdout.readline())
             time.sleep(5)  # it has met the loop

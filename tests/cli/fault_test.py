@@ -31,7 +31,7 @@ class FullDisk(RenderTest):
             arguments = self.command("--samples=1", "--quiet", "--output=full/a.exr", size=(size, size))
             return shlex.join([str(CHAPTER), *arguments])
 
-        script = f"{mount}; {render(8)}; before=$(cksum full/a.exr); {render(256)}; echo $?; ls -A full; [ \"$before\" = \"$(cksum full/a.exr)\" ]"
+        script = f'{mount}; {render(8)}; before=$(cksum full/a.exr); {render(256)}; echo $?; ls -A full; [ "$before" = "$(cksum full/a.exr)" ]'
         result = subprocess.run([*namespace, "sh", "-c", script], cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual((result.returncode, result.stdout), (0, "1\na.exr\n"), result.stderr)
         self.assertEqual(result.stderr, "error: full/a.exr: cannot be written: No space left on device\n")
@@ -120,7 +120,9 @@ class FailingDevice(RenderTest):
     def test_what_does_not_fit_is_refused_before_anything_is_allocated(self):
         """Without any memory, allocating the scene would be a different error."""
         arguments = ["instances", "--width=16384", "--height=16384", "--backend=compute"]
-        self.assert_refused(arguments, "too large for the device", "11264 MiB", code=3, environment={**FAULT_LAYER, "FAULT_MEMORY_MIB": "0"})
+        self.assert_refused(
+            arguments, "too large for the device", "11264 MiB", code=3, environment={**FAULT_LAYER, "FAULT_MEMORY_MIB": "0"}
+        )
 
 
 class SmallDevice(RenderTest):
@@ -163,7 +165,7 @@ class SharedCache(RenderTest):
     def setUp(self):
         super().setUp()
         self.cache = self.folder / "cache"
-        # Two programs that compile the same for `native` are in debug_test.py.
+        # Two programs that compile the same for `native` are in native_test.py.
         self.environment = {"XDG_CACHE_HOME": str(self.cache), "LAB_WITHOUT_NATIVE": "1", **UNOPTIMISED}
 
     def render_at_once(self, names, backend):
