@@ -3,18 +3,25 @@
 "use strict";
 const fs = require("fs");
 globalThis.live = {};
-for (const name of ["preprocessor", "layout", "glsl"]) require(`${process.argv[2]}/${name}.js`);
+for (const name of ["preprocessor", "layout", "translation", "glsl"]) require(`${process.argv[2]}/${name}.js`);
 
-const { sources, jobs } = JSON.parse(fs.readFileSync(0, "utf8"));
-const texture = { binding: new live.Layout(sources["shaders/interface.h"]).constants.BINDING_TEXTURES, first: 0, width: 1, height: 1 };
-for (const { file, chapter, texts, defines } of jobs) {
+const {sources, jobs} = JSON.parse(fs.readFileSync(0, "utf8"));
+const texture = {
+    binding: new live.Layout(sources["shaders/interface.h"]).constants.BINDING_TEXTURES,
+    first: 0,
+    width: 1,
+    height: 1
+};
+for (const {file, chapter, texts, defines} of jobs) {
     let text;
     try {
-        const translated = live.glsl.translate({ sources: { ...sources, ...texts }, chapter, defines, scene: { buffers: [], images: [texture] } });
-        text = translated.text.split("\n").map((line, i) => {
+        const translated =
+            live.glsl.translate({sources: {...sources, ...texts}, chapter, defines, scene: {buffers: [], images: [texture]}});
+        const lines = translated.text.split("\n").map((line, i) => {
             const place = translated.place(i + 1);
             return place ? `${line}  // ${place.file}:${place.line}` : line;
-        }).join("\n");
+        });
+        text = lines.join("\n");
     } catch (error) { text = `#error ${error.message}\n`; }
     fs.writeFileSync(file, text);
 }

@@ -2,37 +2,51 @@
 "use strict";
 
 live.Controls = (() => {
-    const { element } = live;
-    const VIEWS = { picture: "picture", difference: "difference to the reference", bias: "bias in standard errors", noise: "noise",
-                    ALBEDO: "albedo", NORMALS: "normals" };
-    const LIGHTS = { both: "both", light: "light samples", bounces: "bounces" };
+    const {element} = live;
+    const VIEWS = {
+        picture: "picture",
+        difference: "difference to the reference",
+        bias: "bias in standard errors",
+        noise: "noise",
+        ALBEDO: "albedo",
+        NORMALS: "normals"
+    };
+    const LIGHTS = {both: "both", light: "light samples", bounces: "bounces"};
 
-    const button = (text, click) => element("button", { type: "button", click }, text);
+    const button = (text, click) => element("button", {type: "button", click}, text);
     const label = (text, ...parts) => element("label", {}, text, ...parts);
-    const select = (options, change) => element("select", { change }, ...options.map(([value, text]) => element("option", { value }, text)));
+    const select = (options, change) =>
+        element("select", {change}, ...options.map(([value, text]) => element("option", {value}, text)));
     const lengthText = name => `${name.replace(/_\d+$/, "").replaceAll("_", " ")}, up to ${name.replace(/.*_/, "")} bounces`;
 
     return class Controls {
         constructor(frame) {
-            const { about: { pictures, strategies, exercise, bugs }, editor } = frame, restart = () => frame.restart();
+            const {about: {pictures, strategies, exercise, bugs}, editor} = frame, restart = () => frame.restart();
             this.isPaused = false;
-            this.scene = select(pictures.map(({ name }, i) => [i, lengthText(name)]), () => { this.length.value = ""; restart(); });
+            this.scene = select(pictures.map(({name}, i) => [i, lengthText(name)]), () => {
+                this.length.value = "";
+                restart();
+            });
             this.view = select(Object.entries(VIEWS), () => frame.viewChanged());
             this.strategy = select(strategies.map(name => [name, LIGHTS[name]]), restart);
-            this.length = element("input", { type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart });
-            this.compared = element("input", { type: "checkbox", change: restart });
+            this.length =
+                element("input", {type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart});
+            this.compared = element("input", {type: "checkbox", change: restart});
             this.pause = button("Pause", () => frame.setPaused(!this.isPaused));
             const bug = select([["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])], () => frame.plant(bugs[bug.value]));
-            this.root = element("div", { class: "live-controls", role: "group", "aria-label": "controls of the picture" },
-                label("Scene ", this.scene), label("Show ", this.view), ...(strategies.length > 1 ? [label("Light by ", this.strategy)] : []),
-                label("Bounces ", this.length),
-                ...(pictures.some(({ before }) => before) ? [label(this.compared, " compare with the chapter before")] : []),
+            const startExercise = () => editor.replace({...editor.state, [exercise.file]: exercise.text}, exercise.file);
+            const fillWindow = () => document.fullscreenElement ? document.exitFullscreen() : frame.root.requestFullscreen();
+            this.root = element(
+                "div", {class: "live-controls", role: "group", "aria-label": "controls of the picture"},
+                label("Scene ", this.scene), label("Show ", this.view),
+                ...(strategies.length > 1 ? [label("Light by ", this.strategy)] : []), label("Bounces ", this.length),
+                ...(pictures.some(({before}) => before) ? [label(this.compared, " compare with the chapter before")] : []),
                 this.pause, button("Restart", restart), button("Check", () => frame.check()),
-                ...(exercise ? [button("Start exercise 1", () => editor.replace({ ...editor.state, [exercise.file]: exercise.text }, exercise.file))] : []),
-                ...(bugs.length ? [label("Bug to find ", bug)] : []),
-                button("Original text", () => editor.replace({})), editor.back, button("Download", () => editor.download()),
-                button("Open", () => editor.openFile()), button("Copy a link", () => frame.copyLink()),
-                ...(document.fullscreenEnabled ? [button("Full window", () => document.fullscreenElement ? document.exitFullscreen() : frame.root.requestFullscreen())] : []));
+                ...(exercise ? [button("Start exercise 1", startExercise)] : []),
+                ...(bugs.length ? [label("Bug to find ", bug)] : []), button("Original text", () => editor.replace({})),
+                editor.back, button("Download", () => editor.download()), button("Open", () => editor.openFile()),
+                button("Copy a link", () => frame.copyLink()),
+                ...(document.fullscreenEnabled ? [button("Full window", fillWindow)] : []));
         }
 
         // Whether surfaces are shown instead of radiance.

@@ -2,7 +2,7 @@
 "use strict";
 
 live.Layout = (() => {
-    const { ShaderError } = live.preprocessor;
+    const {ShaderError} = live.preprocessor;
 
     // The words of a scalar, vector or matrix, and nothing for other types.
     function plainWords(type) {
@@ -15,8 +15,10 @@ live.Layout = (() => {
             // {name: [[type, member, array size or undefined]]}
             this.structs = {};
             for (const [, name, body] of interfaceText.matchAll(/^struct (\w+) \{([^}]*)\}/gm))
-                this.structs[name] = [...body.matchAll(/(\w+) (\w+)(?:\[(\w+)\])?;/g)].map(([, type, member, count]) => [type, member, count]);
-            this.constants = Object.fromEntries([...interfaceText.matchAll(/^SHARED_CONSTANT (\w+) = (\d+)u;/gm)].map(([, name, value]) => [name, Number(value)]));
+                this.structs[name] =
+                    [...body.matchAll(/(\w+) (\w+)(?:\[(\w+)\])?;/g)].map(([, type, member, count]) => [type, member, count]);
+            const constants = [...interfaceText.matchAll(/^SHARED_CONSTANT (\w+) = (\d+)u;/gm)];
+            this.constants = Object.fromEntries(constants.map(([, name, value]) => [name, Number(value)]));
         }
 
         wordsOf(type, count) {
@@ -35,7 +37,8 @@ live.Layout = (() => {
         reader(type, at, count) {
             if (count !== undefined) {
                 const size = this.constants[count], words = this.wordsOf(type);
-                return `${type}[${size}](${Array.from({ length: size }, (_, i) => this.reader(type, `${at} + ${i * words}u`)).join(", ")})`;
+                const elements = Array.from({length: size}, (_, i) => this.reader(type, `${at} + ${i * words}u`));
+                return `${type}[${size}](${elements.join(", ")})`;
             }
             if (this.structs[type]) {
                 let first = 0;
@@ -46,7 +49,7 @@ live.Layout = (() => {
                 return `${type}(${members.join(", ")})`;
             }
             const read = /^[iu]/.test(type) ? "web_word" : "web_float";
-            return `${type}(${Array.from({ length: this.wordsOf(type) }, (_, i) => `${read}(${at} + ${i}u)`).join(", ")})`;
+            return `${type}(${Array.from({length: this.wordsOf(type)}, (_, i) => `${read}(${at} + ${i}u)`).join(", ")})`;
         }
 
         // Functions that read `name[i]` and, for a struct, its members, and the elements of those that are arrays.
@@ -58,8 +61,12 @@ live.Layout = (() => {
             let place = 0;
             for (const [t, member, n] of this.structs[type] ?? []) {
                 const array = n === undefined ? "" : `[${this.constants[n]}]`;
-                functions.push(`${t}${array} web_${name}_${member}(uint i) { return ${this.reader(t, `${at} + ${place}u`, n)}; }`);
-                if (array) functions.push(`${t} web_${name}_${member}(uint i, uint j) { return ${this.reader(t, `${at} + ${place}u + ${this.wordsOf(t)}u * j`)}; }`);
+                const whole = this.reader(t, `${at} + ${place}u`, n);
+                functions.push(`${t}${array} web_${name}_${member}(uint i) { return ${whole}; }`);
+                if (array) {
+                    const element = this.reader(t, `${at} + ${place}u + ${this.wordsOf(t)}u * j`);
+                    functions.push(`${t} web_${name}_${member}(uint i, uint j) { return ${element}; }`);
+                }
                 place += this.wordsOf(t, n);
             }
             return functions.join(" ");

@@ -2,46 +2,52 @@
 "use strict";
 
 live.page = (() => {
-    const { element, plot: { percent, drawOverlay, plotOf } } = live;
+    const {element, plot: {percent, drawOverlay, plotOf}} = live;
     const TYPING = 600;  // milliseconds after the last key until the picture starts again
-    const ENOUGH = 16;  // samples of a picture that show that the device bears the shader
+    const ENOUGH = 16;   // samples of a picture that show that the device bears the shader
 
     class Frame {
         // `keepsTexts`: whether the reader's texts are read and stored.
         constructor(root, keepsTexts = true) {
-            Object.assign(this, { root, keepsTexts, isVisible: true });
+            Object.assign(this, {root, keepsTexts, isVisible: true});
             this.chapter = root.dataset.chapter;
             this.about = live.chapters[this.chapter];
             this.bug = this.about.bugs[root.dataset.bug - 1];
             if (root.dataset.bug && !this.bug) return;  // a student's book has none
-            root.append(element("button", { type: "button", class: "live-start", click: () => this.startByHand() }, this.bug ? "Find this bug here" : "Render this chapter here"),
-                        element("p", {}, "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
-                                "The pictures are noisy at first, and the fan may start."));
+            const name = this.bug ? "Find this bug here" : "Render this chapter here", click = () => this.startByHand();
+            const words = [
+                "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
+                "The pictures are noisy at first, and the fan may start."
+            ];
+            root.append(element("button", {type: "button", class: "live-start", click}, name), element("p", {}, ...words));
         }
 
         // The button is gone afterwards: the keyboard goes on at the first control.
         async startByHand() {
             await this.start();
-            this.root.querySelector(".live-controls select").focus({ preventScroll: true });
+            this.root.querySelector(".live-controls select").focus({preventScroll: true});
         }
 
         async start() {
-            this.verdict = element("p", { class: "live-verdict", role: "status", "aria-live": "polite" }, "starting …");
-            this.note = element("p", { class: "live-note", role: "status" });
-            this.edits = element("p", { class: "live-note live-edits", hidden: "" });
-            this.plot = element("div", { class: "live-plot" });
-            this.results = element("div", { class: "live-results", role: "status" });
-            this.editor = new live.Editor(this.chapter, () => this.edited(), text => { this.note.textContent = text; }, this.keepsTexts);
+            this.verdict = element("p", {class: "live-verdict", role: "status", "aria-live": "polite"}, "starting …");
+            this.note = element("p", {class: "live-note", role: "status"});
+            this.edits = element("p", {class: "live-note live-edits", hidden: ""});
+            this.plot = element("div", {class: "live-plot"});
+            this.results = element("div", {class: "live-results", role: "status"});
+            const say = text => {
+                this.note.textContent = text;
+            };
+            this.editor = new live.Editor(this.chapter, () => this.edited(), say, this.keepsTexts);
             this.controls = new live.Controls(this);
             this.picture = new live.Picture(this);
             await this.editor.readLink();
-            const { root, caption, numbers } = this.picture;
-            this.root.replaceChildren(this.controls.root,
-                element("div", { class: "live-columns" },
-                    element("div", { class: "live-picture" }, this.edits, root, caption, this.verdict, this.plot, numbers, this.note),
-                    this.editor.root), this.results);
+            const {root, caption, numbers} = this.picture;
+            const parts = [this.edits, root, caption, this.verdict, this.plot, numbers, this.note];
+            const columns = [element("div", {class: "live-picture"}, ...parts), this.editor.root];
+            this.root.replaceChildren(this.controls.root, element("div", {class: "live-columns"}, ...columns), this.results);
             if (this.bug) {
-                this.controls.scene.value = Math.max(this.about.pictures.findIndex(({ name }) => name === this.root.dataset.picture), 0);
+                const place = this.about.pictures.findIndex(({name}) => name === this.root.dataset.picture);
+                this.controls.scene.value = Math.max(place, 0);
                 this.plant(this.bug);
             }
             this.root.classList.add("live-running");
@@ -52,7 +58,8 @@ live.page = (() => {
                 this.fail(error.message);
                 return;
             }
-            if (this.picture.renderer.device.isSlow) this.note.textContent ||= "This browser draws without a GPU: everything works, but slowly.";
+            if (this.picture.renderer.device.isSlow)
+                this.note.textContent ||= "This browser draws without a GPU: everything works, but slowly.";
             this.restart();
         }
 
@@ -65,9 +72,10 @@ live.page = (() => {
 
         // Puts a mistake into the chapter's own text; without one, the text that was there before the first.
         plant(bug) {
-            const { editor } = this, file = bug && editor.files.find(path => live.sources[path].split(bug.find).length === 2);
+            const {editor} = this, file = bug && editor.files.find(path => live.sources[path].split(bug.find).length === 2);
             if (file) this.withoutBug ??= editor.state;
-            editor.replace(file ? { [file]: live.sources[file].replace(bug.find, () => bug.replace) } : this.withoutBug ?? editor.state);
+            const planted = file && {[file]: live.sources[file].replace(bug.find, () => bug.replace)};
+            editor.replace(planted ?? this.withoutBug ?? editor.state);
             if (!file) this.withoutBug = undefined;
         }
 
@@ -75,7 +83,8 @@ live.page = (() => {
         showEdits() {
             const names = this.editor.edited.map(file => {
                 const [, folder, name] = /^chapters\/([^/]*)\/(.*)$/.exec(file);
-                return `${name} of chapter ${parseInt(folder)}${folder === this.chapter ? "" : ", which that chapter's page has, too"}`;
+                const more = folder === this.chapter ? "" : ", which that chapter's page has, too";
+                return `${name} of chapter ${parseInt(folder)}${more}`;
             });
             this.edits.hidden = !names.length;
             this.edits.textContent = `Changed by you: ${names.join("; ")}. “Original text” undoes it.`;
@@ -98,7 +107,11 @@ live.page = (() => {
             try {
                 await navigator.clipboard.writeText(link);
                 this.note.textContent = "The link is copied: it contains your text.";
-            } catch { this.note.replaceChildren("The browser does not let this page copy. Copy the link, which contains your text, from here: ", element("input", { readonly: "", value: link, "aria-label": "link" })); }
+            } catch {
+                this.note.replaceChildren(
+                    "The browser does not let this page copy. Copy the link, which contains your text, from here: ",
+                    element("input", {readonly: "", value: link, "aria-label": "link"}));
+            }
             if (link.length > 8000) this.note.append(" It is long, and some programs cut long links: rather download the text.");
         }
 
@@ -108,9 +121,11 @@ live.page = (() => {
         }
 
         viewChanged() {
-            const { isView } = this.controls;
-            if (isView || this.showsView) this.restart();
-            else if (this.film) this.drawOverlay();
+            const {isView} = this.controls;
+            if (isView || this.showsView)
+                this.restart();
+            else if (this.film)
+                this.drawOverlay();
             this.showsView = isView;
         }
 
@@ -118,12 +133,13 @@ live.page = (() => {
 
         async restart() {
             if (!this.activate()) return;
-            const started = performance.now(), { picture } = this;
+            const started = performance.now(), {picture} = this, show = (...all) => this.show(...all, started);
             this.film = null;
             this.drawOverlay();
             this.results.replaceChildren();
             try {
-                await picture.render(this.about.pictures[this.controls.scene.value], () => live.Picture.MOST_SAMPLES, (...all) => this.show(...all, started));
+                const chosen = this.about.pictures[this.controls.scene.value];
+                await picture.render(chosen, () => live.Picture.MOST_SAMPLES, show);
             } catch (error) { this.report(error); }
         }
 
@@ -131,7 +147,9 @@ live.page = (() => {
             if (!this.activate()) return;
             this.setPaused(false);
             this.controls.reset();
-            try { await live.check(this); } catch (error) { this.report(error); }
+            try {
+                await live.check(this);
+            } catch (error) { this.report(error); }
         }
 
         activate() {
@@ -145,22 +163,31 @@ live.page = (() => {
             if (error instanceof live.glsl.ShaderError) {
                 this.editor.showError(error.message);
                 this.fail("the shader has an error: see below the text");
-            } else this.fail(error.message);
+            } else
+                this.fail(error.message);
         }
 
         show(film, reference, verdict, started) {
-            const { picture, controls: { isView, length } } = this, { means, error } = live.statistics.relativeError(film, reference);
+            const {picture, controls: {isView, length}} = this, {means, error} = live.statistics.relativeError(film, reference);
             this.editor.showError("");
-            Object.assign(this, { film, reference, means, latest: verdict });
+            Object.assign(this, {film, reference, means, latest: verdict});
             if (film.samples >= ENOUGH) picture.losses = 0;
-            const seconds = (performance.now() - started) / 1000, hasReference = !isView && length.value === "", isBiased = verdict.verdict?.isBiased;
-            this.verdict.className = "live-verdict" + (!hasReference || !verdict.verdict ? "" : isBiased ? " live-biased" : " live-agrees");
-            this.verdict.textContent = isView ? "this view shows surfaces, not light" : !hasReference ? "no verdict: there is no reference for this path length" :
-                !film.rays ? "no verdict: the shader traces no ray" : verdict.text;
+            const seconds = (performance.now() - started) / 1000, hasReference = !isView && length.value === "";
+            const isBiased = verdict.verdict?.isBiased;
+            this.verdict.className = "live-verdict";
+            if (hasReference && verdict.verdict) this.verdict.classList.add(isBiased ? "live-biased" : "live-agrees");
+            if (isView)
+                this.verdict.textContent = "this view shows surfaces, not light";
+            else if (!hasReference)
+                this.verdict.textContent = "no verdict: there is no reference for this path length";
+            else
+                this.verdict.textContent = film.rays ? verdict.text : "no verdict: the shader traces no ray";
             if (hasReference) picture.errors.push([film.samples, error]);
-            picture.numbers.textContent = `${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${(film.rays / seconds / 1e6).toFixed(2)} million rays per second` +
-                (film.samples === 1 ? "" : hasReference ? `, error ${percent(error)}` : "") +
-                (film.invalid ? `; ${film.invalid} samples are infinite or no numbers: their pixels are magenta` : "");
+            const speed = (film.rays / seconds / 1e6).toFixed(2);
+            const numbers = [`${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${speed} million rays per second`];
+            if (film.samples > 1 && hasReference) numbers.push(`, error ${percent(error)}`);
+            if (film.invalid) numbers.push(`; ${film.invalid} samples are infinite or no numbers: their pixels are magenta`);
+            picture.numbers.textContent = numbers.join("");
             this.plot.innerHTML = plotOf(picture.errors);
             this.drawOverlay();
         }
@@ -172,9 +199,14 @@ live.page = (() => {
             if (root.dataset.chapter === "report") root.report = new live.Report(root, Frame);
             if (!(root.dataset.chapter in live.chapters)) continue;
             root.frame = new Frame(root, !root.dataset.bug);
-            new IntersectionObserver(entries => { root.frame.isVisible = entries.at(-1).isIntersecting; }).observe(root);
+            new IntersectionObserver(entries => {
+                root.frame.isVisible = entries.at(-1).isIntersecting;
+            }).observe(root);
         }
     }
-    if (document.readyState === "loading") addEventListener("DOMContentLoaded", init); else init();
-    return { Frame };
+    if (document.readyState === "loading")
+        addEventListener("DOMContentLoaded", init);
+    else
+        init();
+    return {Frame};
 })();

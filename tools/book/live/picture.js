@@ -2,7 +2,8 @@
 "use strict";
 
 live.Picture = (() => {
-    const { element } = live, { Renderer, Rendering, loadData, loadReference, unpackWords } = live.rendering, { percent } = live.plot;
+    const {element} = live, {loadData, loadReference, unpackWords} = live.loading, {percent} = live.plot;
+    const {Renderer, Rendering} = live.rendering;
     const TURNS = 65536;  // that the loops of a sample may take if paths are short, as in shaders/engine/limited_loops.glsl
 
     return class Picture {
@@ -10,22 +11,32 @@ live.Picture = (() => {
 
         // Of the frame's texts, with the choices of its controls.
         constructor(frame) {
-            const { chapter, root: { dataset: { folder } } } = frame;
-            Object.assign(this, { frame, chapter, folder, turn: 0, losses: 0 });
+            const {chapter, root: {dataset: {folder}}} = frame;
+            Object.assign(this, {frame, chapter, folder, turn: 0, losses: 0});
             this.renderings = [];  // of this chapter, and perhaps of the one before
-            this.errors = [];  // samples and error, of this chapter
-            this.overlay = element("canvas", { class: "live-overlay", "aria-hidden": "true" });
-            this.line = element("input", { type: "range", class: "live-line", min: "0", max: "100", value: "50", hidden: "",
-                                           "aria-label": "the line between this chapter, left, and the one before", input: () => this.paint() });
-            this.root = element("div", { class: "live-canvases" }, this.overlay, this.line);
-            this.caption = element("p", { class: "live-numbers" });
-            this.numbers = element("p", { class: "live-numbers" });
+            this.errors = [];      // samples and error, of this chapter
+            this.overlay = element("canvas", {class: "live-overlay", "aria-hidden": "true"});
+            this.line = element("input", {
+                type: "range",
+                class: "live-line",
+                min: "0",
+                max: "100",
+                value: "50",
+                hidden: "",
+                "aria-label": "the line between this chapter, left, and the one before",
+                input: () => this.paint()
+            });
+            this.root = element("div", {class: "live-canvases"}, this.overlay, this.line);
+            this.caption = element("p", {class: "live-numbers"});
+            this.numbers = element("p", {class: "live-numbers"});
         }
 
-        // A browser gives a page few contexts, and takes the oldest away: all frames draw on one canvas, which moves to the active one.
+        // A browser gives a page few contexts, and takes the oldest away: all frames draw on one canvas, which moves to the
+        // active one.
         begin() {
             if (!Picture.renderer) {
-                Picture.canvas = element("canvas", { width: "256", height: "256", role: "img", "aria-label": "the picture as it renders" });
+                Picture.canvas =
+                    element("canvas", {width: "256", height: "256", role: "img", "aria-label": "the picture as it renders"});
                 Picture.renderer = new Renderer(Picture.canvas);
                 Picture.canvas.addEventListener("webglcontextlost", event => {
                     event.preventDefault();
@@ -52,47 +63,59 @@ live.Picture = (() => {
 
         lost() {
             this.stop();
-            this.frame.fail(++this.losses > 1 ? "The browser took the GPU away again before the picture had got far. Make the shader smaller, then press Restart." :
-                "The browser took the GPU away; starting again …");
+            this.frame.fail(
+                ++this.losses > 1 ?
+                    "The browser took the GPU away again before the picture had got far. Make the shader smaller, then press Restart." :
+                    "The browser took the GPU away; starting again …");
         }
 
-        restored() { if (this.losses < 2) this.frame.restart(); }
+        restored() {
+            if (this.losses < 2) this.frame.restart();
+        }
 
         stop() {
             ++this.turn;
-            for (const { rendering } of this.renderings) rendering.stop();
+            for (const {rendering} of this.renderings) rendering.stop();
             this.renderings = [];
         }
 
         // Compiles texts for a picture's scene. Throws ShaderErrors.
-        async prepare({ scene, parameters: words, chapter = this.chapter, options = this.frame.controls.options }, sources) {
+        async prepare({scene, parameters: words, chapter = this.chapter, options = this.frame.controls.options}, sources) {
             if (typeof scene === "string") scene = await loadData(this.folder, scene);
             scene.words ??= await unpackWords(scene.packed);
-            const parameters = Uint32Array.from(words), placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
-            const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)], { isView, view, length } = this.frame.controls;
-            if (length.value !== "") parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(length.value), 0), 100);
+            const parameters = Uint32Array.from(words);
+            const placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
+            const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
+            const {isView, view, length} = this.frame.controls;
+            if (length.value !== "")
+                parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(length.value), 0), 100);
             const defines = [...scene.defines, ...options], named = {};
             if (isView) {
                 defines.push(`VIEW_${view.value}`);
-                Object.assign(named, { "path_trace.glsl": "shaders/observation/view.glsl", "sample_loop.glsl": "shaders/engine/sample_loop.glsl" });
+                named["path_trace.glsl"] = "shaders/observation/view.glsl";
+                named["sample_loop.glsl"] = "shaders/engine/sample_loop.glsl";
             }
-            const translated = live.glsl.translate({ sources, chapter, named, defines, scene });
-            const started = performance.now(), linked = await this.renderer.compile(translated), compileTime = performance.now() - started;
-            return { rendering: new Rendering(this.renderer, { translated, linked, scene, parameters, size }), translated, chapter, compileTime };
+            const translated = live.glsl.translate({sources, chapter, named, defines, scene});
+            const started = performance.now(), linked = await this.renderer.compile(translated);
+            const compileTime = performance.now() - started;
+            const rendering = new Rendering(this.renderer, {translated, linked, scene, parameters, size});
+            return {rendering, translated, chapter, compileTime};
         }
 
         // Renders a picture; look(film, state, verdict) is called at powers of two. Returns whether it came to its end.
         async render(picture, target, look) {
             this.stop();
-            const { turn, frame, frame: { controls, editor } } = this, started = performance.now(), { before } = picture;
-            if (editor.tooLong) throw new live.glsl.ShaderError(`${editor.tooLong}:1: the text is longer than any shader needs: is it the right file?`);
+            const {turn, frame, frame: {controls, editor}} = this, started = performance.now(), {before} = picture;
+            if (editor.tooLong)
+                throw new live.glsl.ShaderError(
+                    `${editor.tooLong}:1: the text is longer than any shader needs: is it the right file?`);
             this.numbers.textContent = "compiling …";
             this.errors = [];
             const reference = picture.unpacked ??= await loadReference(this.folder, picture.reference);
-            const state = await this.prepare(picture, editor.sources), { rendering } = state, states = [state];
+            const state = await this.prepare(picture, editor.sources), {rendering} = state, states = [state];
             if (turn === this.turn && controls.compared.checked && before) states.push(await this.prepare(before, live.sources));
             if (turn !== this.turn) {
-                for (const { rendering } of states) rendering.stop();
+                for (const {rendering} of states) rendering.stop();
                 return false;
             }
             this.renderings = states;
@@ -100,13 +123,21 @@ live.Picture = (() => {
             this.line.hidden = states.length < 2;
             this.caption.textContent = "";
             const verdict = new live.statistics.LiveVerdict(reference, ...rendering.size), other = states[1]?.rendering;
-            const isPaused = (a, b) => controls.isPaused || !frame.isVisible || document.hidden || b && a.busy > b.busy && b.samples < Picture.MOST_SAMPLES;  // whoever has had more time waits
-            other?.render({ target: () => Picture.MOST_SAMPLES, isPaused: () => isPaused(other, rendering), shown: () => this.paint(), look: film => this.compare(film, reference) });
+            const isPaused = (a, b) => controls.isPaused || !frame.isVisible || document.hidden ||
+                b && a.busy > b.busy && b.samples < Picture.MOST_SAMPLES;  // whoever has had more time waits
+            other?.render({
+                target: () => Picture.MOST_SAMPLES,
+                isPaused: () => isPaused(other, rendering),
+                shown: () => this.paint(),
+                look: film => this.compare(film, reference)
+            });
             return rendering.render({
-                target, isPaused: () => isPaused(rendering, other), shown: () => this.paint(),
+                target,
+                isPaused: () => isPaused(rendering, other),
+                shown: () => this.paint(),
                 preview: film => {
                     this.checkLoops(film, state);
-                    this.times ??= { compile: state.compileTime, first: performance.now() - started };
+                    this.times ??= {compile: state.compileTime, first: performance.now() - started};
                 },
                 look: film => {
                     this.checkLoops(film, state);
@@ -118,7 +149,7 @@ live.Picture = (() => {
 
         // Shows what is rendered: this chapter's up to the line, then that of the chapter before.
         paint() {
-            const [own, other] = this.renderings.map(({ rendering }) => rendering);
+            const [own, other] = this.renderings.map(({rendering}) => rendering);
             if (!own) return;
             const [width] = own.size, end = other ? Math.round(width * this.line.value / 100) : width;
             this.renderer.show(other ? [[own, end], [other, width]] : [[own, end]], this.frame.controls.view.value !== "NORMALS");
@@ -127,18 +158,22 @@ live.Picture = (() => {
 
         // What both chapters have reached in the same time. A film of the chapter before is compared with the reference, too.
         compare(film, reference) {
-            const words = (chapter, samples, error) => `chapter ${parseInt(chapter)}: ${samples} samples, error ${percent(error)}`;
-            const [{ chapter }, other] = this.renderings, own = this.errors.at(-1);
-            if (own && film.samples > 1) this.caption.textContent = `After the same time, left ${words(chapter, ...own)}; right ${words(other.chapter, film.samples, live.statistics.relativeError(film, reference).error)}.`;
+            const words = (chapter, samples, error) =>
+                `chapter ${parseInt(chapter)}: ${samples} samples, error ${percent(error)}`;
+            const [{chapter}, other] = this.renderings, own = this.errors.at(-1);
+            if (!own || film.samples <= 1) return;
+            const right = words(other.chapter, film.samples, live.statistics.relativeError(film, reference).error);
+            this.caption.textContent = `After the same time, left ${words(chapter, ...own)}; right ${right}.`;
         }
 
         // Throws if a loop had to be ended: then the samples are wrong.
-        checkLoops(film, { rendering, translated }) {
+        checkLoops(film, {rendering, translated}) {
             if (!film.stuck) return;
-            const { file, line } = translated.loop(film.stuck);
+            const {file, line} = translated.loop(film.stuck);
             rendering.stop();
             const most = Math.min(film.turns, TURNS).toLocaleString("en");
-            throw new live.glsl.ShaderError(`${file}:${line}: this loop does not end, or it takes more than ${most} turns in a sample`);
+            throw new live.glsl.ShaderError(
+                `${file}:${line}: this loop does not end, or it takes more than ${most} turns in a sample`);
         }
     };
 })();

@@ -10,8 +10,9 @@ live.plot = (() => {
         return [1 + Math.min(x, 0), 1 - Math.abs(x), 1 - Math.max(x, 0)].map(part => Math.round(255 * part));
     }
 
-    // What is not the picture itself: differences, the verdict's map, noise. One pixel of the overlay is one of the reference or a tile.
-    function drawOverlay(overlay, view, { film, reference, means, latest }) {
+    // What is not the picture itself: differences, the verdict's map, noise. One pixel of the overlay is one of the reference or
+    // a tile.
+    function drawOverlay(overlay, view, {film, reference, means, latest}) {
         overlay.hidden = !film || !["difference", "bias", "noise"].includes(view) || view === "bias" && !latest.verdict;
         if (overlay.hidden) return;
         const mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
@@ -22,8 +23,12 @@ live.plot = (() => {
             overlay.getContext("2d").putImageData(image, 0, 0);
         };
         const channels = (values, i) => (values[3 * i] + values[3 * i + 1] + values[3 * i + 2]) / 3;
-        if (view === "difference") paint(reference.width, reference.height, i => 2 * (channels(means, i) - channels(reference.mean, i)) / (channels(reference.mean, i) + 0.1 * mean));
-        if (view === "noise") paint(film.width, film.height, i => Math.abs(channels(film.differences, i)) / (Math.abs(channels(film.sums, i)) + 0.1 * mean * film.samples));
+        const difference = i =>
+            2 * (channels(means, i) - channels(reference.mean, i)) / (channels(reference.mean, i) + 0.1 * mean);
+        const noise = i =>
+            Math.abs(channels(film.differences, i)) / (Math.abs(channels(film.sums, i)) + 0.1 * mean * film.samples);
+        if (view === "difference") paint(reference.width, reference.height, difference);
+        if (view === "noise") paint(film.width, film.height, noise);
         if (view === "bias") paint(...latest.tiles, i => latest.verdict.map[i] / 5);
     }
 
@@ -31,15 +36,21 @@ live.plot = (() => {
     function plotOf(errors) {
         const points = errors.filter(([samples, error]) => samples >= 2 && error > 0);
         if (points.length < 2) return "";
-        const x = samples => 34 + 21 * Math.log2(samples), largest = Math.max(...points.map(([, error]) => error));
-        const y = error => 8 + 80 * Math.log(largest / error) / Math.log(largest / Math.min(...points.map(([, e]) => e), largest / 8));
-        const [first, last] = [points[0], points.at(-1)];
+        const all = points.map(([, error]) => error), largest = Math.max(...all), smallest = Math.min(...all, largest / 8);
+        const x = samples => 34 + 21 * Math.log2(samples);
+        const y = error => 8 + 80 * Math.log(largest / error) / Math.log(largest / smallest);
+        const ends = [points[0], points.at(-1)];
+        const [first, last] = ends.map(([samples, error]) => `${percent(error)} after ${samples}`);
         const line = points.map(([samples, error]) => `${x(samples).toFixed(1)},${y(error).toFixed(1)}`).join(" ");
-        return `<svg viewBox="0 0 300 110" role="img" aria-label="error against samples: ${percent(first[1])} after ${first[0]}, ${percent(last[1])} after ${last[0]}">` +
-            `<polyline points="${line}"/>` + points.map(([samples, error]) => `<circle cx="${x(samples)}" cy="${y(error)}" r="2.5"/>`).join("") +
-            `<text x="2" y="${y(first[1]) + 4}">${percent(first[1])}</text><text x="2" y="${y(last[1]) + 4}">${percent(last[1])}</text>` +
-            `<text x="${x(first[0])}" y="106" text-anchor="middle">${first[0]}</text><text x="${x(last[0])}" y="106" text-anchor="middle">${last[0]}</text></svg>`;
+        const parts = [
+            `<svg viewBox="0 0 300 110" role="img" aria-label="error against samples: ${first}, ${last}">`,
+            `<polyline points="${line}"/>`,
+            ...points.map(([samples, error]) => `<circle cx="${x(samples)}" cy="${y(error)}" r="2.5"/>`),
+            ...ends.map(([, error]) => `<text x="2" y="${y(error) + 4}">${percent(error)}</text>`),
+            ...ends.map(([samples]) => `<text x="${x(samples)}" y="106" text-anchor="middle">${samples}</text>`), "</svg>"
+        ];
+        return parts.join("");
     }
 
-    return { percent, drawOverlay, plotOf };
+    return {percent, drawOverlay, plotOf};
 })();

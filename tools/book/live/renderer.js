@@ -2,13 +2,14 @@
 "use strict";
 
 live.rendering = (() => {
-    const WIDTH = 2048;  // texels of the arrays' textures, which every device allows
+    const WIDTH = 2048;        // texels of the arrays' textures, which every device allows
     const MOST_PROGRAMS = 16;  // that are kept
-    const FILM = [0, 1, 2];  // its textures
+    const FILM = [0, 1, 2];    // its textures
     // Which of them a draw writes: some devices write fewer bits at once, and draw everything twice.
     const PASSES = [[FILM], [[0, 1], [2]], [[0], [1], [2]]];
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
-    // Turns that the loops of a sample may take at first, by how much this grows, and milliseconds of a draw that some systems do not bear.
+    // Turns that the loops of a sample may take at first, by how much this grows, and milliseconds of a draw that some systems do
+    // not bear.
     const FEW_TURNS = 1 << 13, MORE = 16, MOST_TURNS = 0xffffffff, TOO_LONG = 4000;
     const FULL_SCREEN = `#version 300 es
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
@@ -30,46 +31,15 @@ void main() {
 
     const pause = milliseconds => new Promise(resolve => setTimeout(resolve, milliseconds));
 
-    async function unpack(base64) {
-        const bytes = Uint8Array.from(atob(base64), character => character.charCodeAt(0));
-        const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-        return new Response(stream).arrayBuffer();
-    }
-
-    // Loads live/data/NAME.js once; a page from the disk may load scripts, but no other files.
-    function loadData(folder, name) {
-        if (live.data[name]) return Promise.resolve(live.data[name]);
-        return new Promise((resolve, reject) => {
-            const script = document.createElement("script");
-            script.src = `${folder}data/${name}.js`;
-            script.onload = () => live.data[name] ? resolve(live.data[name]) : reject(new Error(`${name}.js is damaged`));
-            script.onerror = () => reject(new Error(`${name}.js is missing: the folder "live" belongs beside these pages`));
-            document.head.append(script);
-        });
-    }
-
-    function floatOfHalf(half) {
-        const exponent = half >> 10 & 31, fraction = half & 1023;  // none is negative
-        return exponent === 0 ? fraction * 2 ** -24 : (1 + fraction / 1024) * 2 ** (exponent - 15);
-    }
-
-    const unpackWords = async packed => new Uint32Array(await unpack(packed));
-
-    async function loadReference(folder, name) {
-        const { width, height, samples, scales, packed } = await loadData(folder, name);
-        const halves = new Uint16Array(await unpack(packed)), count = 3 * width * height;
-        const mean = Float64Array.from(halves.subarray(0, count), half => scales[0] * floatOfHalf(half));
-        const variance = Float64Array.from(halves.subarray(count), half => (scales[1] * floatOfHalf(half)) ** 2);
-        return { width, height, samples, mean, variance };
-    }
-
     // The device: what all pictures of a page share.
     class Renderer {
         // Throws an Error that says what the reader can do.
         constructor(canvas) {
             if (!globalThis.DecompressionStream) throw new Error("this browser is too old: update it");
-            this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
-            if (!this.gl) throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
+            const wishes = {antialias: false, alpha: false, preserveDrawingBuffer: true, powerPreference: "high-performance"};
+            this.gl = canvas.getContext("webgl2", wishes);
+            if (!this.gl)
+                throw new Error("this browser offers no WebGL 2: update it, or switch graphics acceleration on in its settings");
             this.layout = new live.Layout(live.sources["shaders/interface.h"]);
             this.make();
         }
@@ -85,12 +55,12 @@ void main() {
         get device() {
             const info = this.gl.getExtension("WEBGL_debug_renderer_info");
             const name = String(this.gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : this.gl.RENDERER));
-            return { name, isSlow: /swiftshader|llvmpipe|softpipe|basic render|software/i.test(name) };
+            return {name, isSlow: /swiftshader|llvmpipe|softpipe|basic render|software/i.test(name)};
         }
 
         // A program, and the place of a uniform.
         link(vertex, fragment) {
-            const { gl } = this, program = gl.createProgram(), places = {};
+            const {gl} = this, program = gl.createProgram(), places = {};
             for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
                 const shader = gl.createShader(kind);
                 gl.shaderSource(shader, text);
@@ -98,22 +68,25 @@ void main() {
                 gl.attachShader(program, shader);
             }
             gl.linkProgram(program);
-            return { program, place: name => places[name] ??= gl.getUniformLocation(program, name) };
+            return {program, place: name => places[name] ??= gl.getUniformLocation(program, name)};
         }
 
         // Compiles a translated shader, or returns one of the last. Throws a ShaderError with the place in the reader's files.
         async compile(translated) {
-            const { gl, parallel, compiled } = this, linked = compiled.get(translated.text) ?? this.link(FULL_SCREEN, translated.text), { program } = linked;
+            const {gl, parallel, compiled} = this;
+            const linked = compiled.get(translated.text) ?? this.link(FULL_SCREEN, translated.text), {program} = linked;
             compiled.delete(translated.text);
-            while (parallel && !gl.isContextLost() && !gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR)) await pause(5);
+            while (parallel && !gl.isContextLost() && !gl.getProgramParameter(program, parallel.COMPLETION_STATUS_KHR))
+                await pause(5);
             if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
                 const logs = gl.getAttachedShaders(program).map(shader => gl.getShaderInfoLog(shader) ?? "");
                 gl.deleteProgram(program);
-                throw new live.glsl.ShaderError(live.glsl.readableError(logs.find(log => log.trim()) ?? gl.getProgramInfoLog(program) ?? "", translated));
+                const log = logs.find(text => text.trim()) ?? gl.getProgramInfoLog(program) ?? "";
+                throw new live.glsl.ShaderError(live.glsl.readableError(log, translated));
             }
             compiled.set(translated.text, linked);
             if (compiled.size > MOST_PROGRAMS) {
-                const [[oldest, { program }]] = compiled;
+                const [[oldest, {program}]] = compiled;
                 compiled.delete(oldest);
                 gl.deleteProgram(program);
             }
@@ -121,7 +94,7 @@ void main() {
         }
 
         image(format, width, height, layout, type, data) {
-            const { gl } = this, texture = gl.createTexture();
+            const {gl} = this, texture = gl.createTexture();
             gl.activeTexture(gl.TEXTURE0);
             gl.bindTexture(gl.TEXTURE_2D, texture);
             gl.texImage2D(gl.TEXTURE_2D, 0, format, width, height, 0, layout, type, data);
@@ -130,8 +103,8 @@ void main() {
         }
 
         // Sets the texture of a uniform.
-        bind({ place }, name, unit, texture) {
-            const { gl } = this;
+        bind({place}, name, unit, texture) {
+            const {gl} = this;
             gl.activeTexture(gl.TEXTURE0 + unit);
             gl.bindTexture(gl.TEXTURE_2D, texture);
             gl.uniform1i(place(name), unit);
@@ -139,7 +112,7 @@ void main() {
 
         // Shows pictures of one size side by side: each up to the `end` of its part, in pixels.
         show(parts, isSrgb) {
-            const { gl, display } = this, [[{ size }]] = parts;
+            const {gl, display} = this, [[{size}]] = parts;
             if (gl.isContextLost()) return;
             if (gl.canvas.width !== size[0] || gl.canvas.height !== size[1]) [gl.canvas.width, gl.canvas.height] = size;
             gl.useProgram(display.program);
@@ -159,45 +132,56 @@ void main() {
 
     // A picture of a scene with a compiled program.
     class Rendering {
-        constructor(renderer, { translated: { hasSampleLoop }, linked, scene, parameters, size }) {  // `busy`: milliseconds of draws
-            Object.assign(this, { renderer, gl: renderer.gl, linked, size, hasSampleLoop, samples: 0, turns: FEW_TURNS, busy: 0, isFirstPass: true, isStopped: false });
-            const { gl, layout } = renderer, { words } = scene, height = Math.ceil(words.length / 4 / WIDTH), texels = new Uint32Array(4 * WIDTH * height);
+        constructor(renderer, {translated: {hasSampleLoop}, linked, scene, parameters, size}) {
+            const {gl, layout} = renderer;
+            Object.assign(this, {renderer, gl, linked, size, hasSampleLoop, samples: 0, turns: FEW_TURNS});
+            Object.assign(this, {busy: 0, isFirstPass: true, isStopped: false});  // `busy`: milliseconds of draws
+            const {words} = scene, height = Math.ceil(words.length / 4 / WIDTH);
+            const texels = new Uint32Array(4 * WIDTH * height);
             texels.set(words);
-            // The tree is read by four words. Compilers for Direct3D take twice as long where a single word is picked out of four.
+            // The tree is read by four words. Compilers for Direct3D take twice as long where a single word is picked out of
+            // four.
             this.arrays = renderer.image(gl.RGBA32UI, WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
             this.words = renderer.image(gl.R32UI, WIDTH, 4 * height, gl.RED_INTEGER, gl.UNSIGNED_INT, texels);
             const probe = scene.images.find(image => image.binding === layout.constants.BINDING_LIGHT_PROBE);
-            if (probe) this.probe = renderer.image(gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, new Float32Array(words.buffer, 4 * probe.first, probe.count));
+            if (probe) {
+                const floats = new Float32Array(words.buffer, 4 * probe.first, probe.count);
+                this.probe = renderer.image(gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, floats);
+            }
             // Two films take turns, since a shader cannot write what it reads.
             this.films = [this.makeFilm(), this.makeFilm()];
             gl.useProgram(linked.program);
             this.setStruct("RenderParameters", "parameters", parameters);
-            for (const { binding, first, count } of scene.buffers) gl.uniform2ui(linked.place(`web_places[${binding}]`), first, count);
+            for (const {binding, first, count} of scene.buffers)
+                gl.uniform2ui(linked.place(`web_places[${binding}]`), first, count);
         }
 
         makeFilm() {
-            const { gl, size } = this, textures = FILM.map(() => this.renderer.image(gl.RGBA32UI, ...size, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null));
+            const {gl, size} = this;
+            const image = () => this.renderer.image(gl.RGBA32UI, ...size, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null);
+            const textures = FILM.map(image);
             for (const passes of PASSES) {
                 const frames = passes.map(written => this.makeFrame(textures, written));
-                if (frames.every(({ isComplete }) => isComplete)) return { frames, textures };
-                for (const { frame } of frames) gl.deleteFramebuffer(frame);
+                if (frames.every(({isComplete}) => isComplete)) return {frames, textures};
+                for (const {frame} of frames) gl.deleteFramebuffer(frame);
             }
             throw new Error("this device cannot store the sums of a picture: try another browser");
         }
 
         // What a draw writes these textures of a film through.
         makeFrame(textures, written) {
-            const { gl } = this, frame = gl.createFramebuffer();
+            const {gl} = this, frame = gl.createFramebuffer();
             gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-            for (const i of written) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, textures[i], 0);
+            for (const i of written)
+                gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, textures[i], 0);
             const isComplete = gl.isContextLost() || gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
             gl.drawBuffers(FILM.slice(0, written.at(-1) + 1).map(i => written.includes(i) ? gl.COLOR_ATTACHMENT0 + i : gl.NONE));
-            if (isComplete) this.clear({ frame, written });
-            return { frame, written, isComplete };
+            if (isComplete) this.clear({frame, written});
+            return {frame, written, isComplete};
         }
 
-        clear({ frame, written }) {
-            const { gl } = this;
+        clear({frame, written}) {
+            const {gl} = this;
             gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
             gl.disable(gl.SCISSOR_TEST);
             for (const i of written) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
@@ -205,22 +189,34 @@ void main() {
 
         // Ends render() at its next draw.
         stop() {
-            const { gl, films, arrays, words, probe } = this;
+            const {gl, films, arrays, words, probe} = this;
             if (this.isStopped) return;
             this.isStopped = true;
-            for (const texture of [arrays, words, probe, ...films.flatMap(film => film.textures)]) gl.deleteTexture(texture ?? null);
-            for (const { frame } of films.flatMap(film => film.frames)) gl.deleteFramebuffer(frame);
+            for (const texture of [arrays, words, probe, ...films.flatMap(film => film.textures)])
+                gl.deleteTexture(texture ?? null);
+            for (const {frame} of films.flatMap(film => film.frames)) gl.deleteFramebuffer(frame);
         }
 
         // Sets the members of a uniform struct from words. Returns the words behind it.
         setStruct(type, name, words) {
-            const { gl, linked, renderer: { layout } } = this, place = linked.place(name), numbers = words.slice(0, 4), floats = new Float32Array(numbers.buffer);
+            const {gl, linked, renderer: {layout}} = this, place = linked.place(name), numbers = words.slice(0, 4);
+            const floats = new Float32Array(numbers.buffer);
             switch (type) {
-                case "float": gl.uniform1f(place, floats[0]); break;
-                case "vec3": gl.uniform3fv(place, floats.subarray(0, 3)); break;
-                case "int": gl.uniform1i(place, numbers[0] | 0); break;
-                case "uint": gl.uniform1ui(place, numbers[0]); break;
-                case "uvec2": gl.uniform2uiv(place, numbers.subarray(0, 2)); break;
+                case "float":
+                    gl.uniform1f(place, floats[0]);
+                    break;
+                case "vec3":
+                    gl.uniform3fv(place, floats.subarray(0, 3));
+                    break;
+                case "int":
+                    gl.uniform1i(place, numbers[0] | 0);
+                    break;
+                case "uint":
+                    gl.uniform1ui(place, numbers[0]);
+                    break;
+                case "uvec2":
+                    gl.uniform2uiv(place, numbers.subarray(0, 2));
+                    break;
                 default:
                     for (const [t, member] of layout.structs[type]) words = this.setStruct(t, `${name}.${member}`, words);
                     return words;
@@ -232,19 +228,28 @@ void main() {
             for (const i of FILM) this.renderer.bind(linked, `web_film_before[${i}]`, i, this.films[film].textures[i]);
         }
 
-        // A film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a stuck loop.
-        // Throws if there is no sample at all: a black picture is no evidence.
-        read({ frames } = this.films[0]) {
-            const { gl, size: [width, height] } = this, count = width * height;
+        // A film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a
+        // stuck loop. Throws if there is no sample at all: a black picture is no evidence.
+        read({frames} = this.films[0]) {
+            const {gl, size: [width, height]} = this, count = width * height;
             const [a, b, c] = FILM.map(i => {
                 const words = new Uint32Array(4 * count);
-                gl.bindFramebuffer(gl.FRAMEBUFFER, frames.find(({ written }) => written.includes(i)).frame);
+                gl.bindFramebuffer(gl.FRAMEBUFFER, frames.find(({written}) => written.includes(i)).frame);
                 gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
                 gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
                 return words;
             });
-            const film = { width, height, samples: this.samples, sums: new Float64Array(3 * count), differences: new Float64Array(3 * count),
-                           rays: 0, invalid: 0, stuck: 0, turns: this.turns };
+            const film = {
+                width,
+                height,
+                samples: this.samples,
+                sums: new Float64Array(3 * count),
+                differences: new Float64Array(3 * count),
+                rays: 0,
+                invalid: 0,
+                stuck: 0,
+                turns: this.turns
+            };
             const [x, y, z] = [a, b, c].map(words => new Float32Array(words.buffer));
             let isDrawn = gl.isContextLost();
             for (let p = 0; p < count; ++p) {
@@ -253,18 +258,22 @@ void main() {
                 film.differences.set([y[i + 2], y[i + 3], z[i]], j);
                 isDrawn ||= c[i + 1] > 0;
                 film.invalid += c[i + 2];
-                if (c[i + 3] >>> 31) film.stuck = c[i + 3] & 0x7fffffff; else film.rays += c[i + 3];
+                if (c[i + 3] >>> 31)
+                    film.stuck = c[i + 3] & 0x7fffffff;
+                else
+                    film.rays += c[i + 3];
             }
-            if (!isDrawn && !film.stuck) throw new Error("nothing is drawn: either the shader finishes no sample, or this device cannot draw it; then please tell us");
-            return film;
+            if (isDrawn || film.stuck) return film;
+            const what = "either the shader finishes no sample, or this device cannot draw it; then please tell us";
+            throw new Error(`nothing is drawn: ${what}`);
         }
 
-        // Renders until `target()` samples are reached or stop() is called. Calls `look(film)` at 1, 2, 4, … samples and the target, and
-        // before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns whether it was not stopped.
-        // `pace`: how much fits into a draw, from the last picture if it was like this one.
-        async render({ target, isPaused = () => false, preview = () => {}, look, shown = () => {} }, pace = { rows: 8, step: 1 }) {
-            const { gl, size } = this;
-            let { rows, step } = pace, isPreview = true;
+        // Renders until `target()` samples are reached or stop() is called. Calls `look(film)` at 1, 2, 4, … samples and the
+        // target, and before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns
+        // whether it was not stopped. `pace`: how much fits into a draw, from the last picture if it was like this one.
+        async render({target, isPaused = () => false, preview = () => {}, look, shown = () => {}}, pace = {rows: 8, step: 1}) {
+            const {gl, size} = this;
+            let {rows, step} = pace, isPreview = true;
             while (this.samples < target()) {
                 const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1);
                 const next = Math.min(this.samples + (isPreview || rows < size[1] ? 1 : step), look_at, target());
@@ -272,7 +281,7 @@ void main() {
                     while (!this.isStopped && isPaused()) await pause(10);
                     if (this.isStopped || gl.isContextLost()) return false;
                     const started = performance.now();
-                    for (let end = this.hasSampleLoop ? next : this.samples + 1; ; ++end) {
+                    for (let end = this.hasSampleLoop ? next : this.samples + 1;; ++end) {
                         this.draw(row, Math.min(rows, size[1] - row), end, isPreview);
                         if (end >= next) break;
                         this.films.reverse();  // one draw has rendered all rows
@@ -290,11 +299,15 @@ void main() {
                         preview(film);
                     }
                     if (!isPreview) this.busy += time;  // which may include a driver's compiler
-                    if (time < SHORT && rows < size[1]) rows *= 2;
-                    else if (time < SHORT && row >= size[1]) step *= 2;
-                    else if (time > LONG && step > 1 && rows >= size[1]) step = Math.ceil(step / 2);
-                    else if (time > LONG) rows = Math.max(1, Math.floor(rows / 2));
-                    Object.assign(pace, { rows, step });
+                    if (time < SHORT && rows < size[1])
+                        rows *= 2;
+                    else if (time < SHORT && row >= size[1])
+                        step *= 2;
+                    else if (time > LONG && step > 1 && rows >= size[1])
+                        step = Math.ceil(step / 2);
+                    else if (time > LONG)
+                        rows = Math.max(1, Math.floor(rows / 2));
+                    Object.assign(pace, {rows, step});
                     if (this.isFirstPass) shown();
                 }
                 this.films.reverse();
@@ -303,31 +316,33 @@ void main() {
                 if (!isPreview) this.samples = next;
                 const film = isPreview || next === look_at || next >= target() ? this.read() : null;
                 if (gl.isContextLost()) return false;  // what has been read is black
-                if (film?.stuck && await this.allowMore(rows)) isPreview = true;
+                if (film?.stuck && await this.allowMore(rows))
+                    isPreview = true;
                 else if (isPreview) {
                     isPreview = false;
                     preview(film);
                     rows = Math.max(1, rows >> 3);
-                } else if (film) look(film);
+                } else if (film)
+                    look(film);
             }
             return true;
         }
 
-        // A loop has been ended: lets loops take more turns and begins anew, unless a draw would keep the device busy for too long. Returns
-        // whether it does. The first draw may have waited for a driver's compiler, so that its time says nothing.
+        // A loop has been ended: lets loops take more turns and begins anew, unless a draw would keep the device busy for too
+        // long. Returns whether it does. The first draw may have waited for a driver's compiler, so that its time says nothing.
         async allowMore(rows) {
-            const started = performance.now(), { gl } = this;
+            const started = performance.now(), {gl} = this;
             this.draw(0, rows, this.samples + 1, true);
             await this.finished();
             if (this.turns >= MOST_TURNS || (performance.now() - started) * MORE > TOO_LONG) return false;
             this.turns = Math.min(this.turns * MORE, MOST_TURNS);
-            for (const frame of this.films.flatMap(({ frames }) => frames)) this.clear(frame);
-            Object.assign(this, { samples: 0, isFirstPass: true });
+            for (const frame of this.films.flatMap(({frames}) => frames)) this.clear(frame);
+            Object.assign(this, {samples: 0, isFirstPass: true});
             return true;
         }
 
         draw(row, rows, target, isPreview) {
-            const { gl, linked, linked: { place }, films, size, samples } = this;
+            const {gl, linked, linked: {place}, films, size, samples} = this;
             gl.useProgram(linked.program);
             this.bindFilm(linked, 0);
             this.renderer.bind(linked, "web_arrays", 3, this.arrays);
@@ -340,7 +355,7 @@ void main() {
             gl.viewport(0, 0, ...size);
             gl.enable(gl.SCISSOR_TEST);
             gl.scissor(0, row, size[0], rows);
-            for (const { frame } of films[1].frames) {
+            for (const {frame} of films[1].frames) {
                 gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
                 gl.drawArrays(gl.TRIANGLES, 0, 3);
             }
@@ -348,12 +363,12 @@ void main() {
 
         // Waits until the device has done everything so far.
         async finished() {
-            const { gl } = this, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+            const {gl} = this, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
             gl.flush();
             while (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) await pause(0);
             gl.deleteSync(fence);
         }
     }
 
-    return { Renderer, Rendering, loadData, loadReference, unpack, unpackWords, pause };
+    return {Renderer, Rendering, pause};
 })();

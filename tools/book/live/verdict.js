@@ -1,5 +1,5 @@
-// The live verdict of common/statistics/live_verdict.cpp in JavaScript: a test feeds both the same films. The names are those of the
-// C++ files, which explain the method.
+// The live verdict of common/statistics/live_verdict.cpp in JavaScript: a test feeds both the same films. The names are those of
+// the C++ files, which explain the method.
 "use strict";
 
 live.statistics = (() => {
@@ -41,7 +41,7 @@ live.statistics = (() => {
     const wallaceFactor = freedom => (8 * freedom + 1) / (8 * freedom + 3);
 
     class Difference {
-        constructor(value, standardError, freedom) { Object.assign(this, { value, standardError, freedom }); }
+        constructor(value, standardError, freedom) { Object.assign(this, {value, standardError, freedom}); }
         get z() {
             if (this.value === 0) return 0;
             const t = this.value / this.standardError;
@@ -79,7 +79,8 @@ live.statistics = (() => {
         constructor(reference, width, height) {
             this.reference = reference;
             this.scale = width / reference.width;
-            if (!Number.isInteger(this.scale) || height !== this.scale * reference.height) throw new Error("the reference has another size");
+            if (!Number.isInteger(this.scale) || height !== this.scale * reference.height)
+                throw new Error("the reference has another size");
             this.tiles = [Math.ceil(reference.width / TILE), Math.ceil(reference.height / TILE)];
             this.nextSamples = FIRST_TEST;
             while (this.nextSamples * width * height < RELIABLE_PATHS) this.nextSamples *= 2;
@@ -96,7 +97,7 @@ live.statistics = (() => {
 
         // Of a square of tiles, or the image: the reference's mean and its variance, and the difference of a channel.
         difference(x, y, edge, channel) {
-            const { reference, differences } = this;
+            const {reference, differences} = this;
             const right = Math.min((x + edge) * TILE, reference.width), bottom = Math.min((y + edge) * TILE, reference.height);
             const count = (right - x * TILE) * (bottom - y * TILE);
             let mean = 0, variance = 0, value = 0, spread = 0;
@@ -109,39 +110,55 @@ live.statistics = (() => {
                 variance += reference.variance[i] / (count * count);
                 value += differences[i] / count;
             });
-            each(i => { spread += (differences[i] - value) ** 2 / (count - 1); });
-            if (count === 1) return { mean, difference: new Difference(0, Infinity, 1) };
+            each(i => {
+                spread += (differences[i] - value) ** 2 / (count - 1);
+            });
+            if (count === 1) return {mean, difference: new Difference(0, Infinity, 1)};
             let error = spread / count;
             if (mean + value > 0) error *= Math.max(mean / (mean + value), 1);
             error = Math.max(error, variance * (reference.samples / (this.scale * this.scale)) / this.samples);
-            return { mean, difference: new Difference(value, Math.sqrt(error + (RENDERER_ROUNDING * mean) ** 2), count - 1) };
+            return {mean, difference: new Difference(value, Math.sqrt(error + (RENDERER_ROUNDING * mean) ** 2), count - 1)};
         }
 
         finestReliableEdge() {
             const paths = (TILE * this.scale) ** 2 * this.samples;
-            for (let edge = 1; edge < Math.max(...this.tiles); edge *= 2) if (edge * edge * paths >= RELIABLE_PATHS) return edge;
+            for (let edge = 1; edge < Math.max(...this.tiles); edge *= 2)
+                if (edge * edge * paths >= RELIABLE_PATHS) return edge;
             return 0;
         }
 
         test() {
             const level = 0.5 * FALSE_ALARMS / ((this.tests + 1) * (this.tests + 2)), [columns, rows] = this.tiles;
             ++this.tests;
-            const verdict = { samples: this.samples, isBiased: this.verdict?.isBiased ?? false, differences: [], smallestDetectable: [],
-                              map: [], tileSize: 0, tiles: 0, brightTiles: 0, darkTiles: 0 };
+            const verdict = {
+                samples: this.samples,
+                isBiased: this.verdict?.isBiased ?? false,
+                differences: [],
+                smallestDetectable: [],
+                map: [],
+                tileSize: 0,
+                tiles: 0,
+                brightTiles: 0,
+                darkTiles: 0
+            };
             const scales = [0, 1, 2].map(channel => {
-                const { mean, difference } = this.difference(0, 0, Math.max(columns, rows), channel), scale = mean > 0 ? mean : 1;
+                const {mean, difference} = this.difference(0, 0, Math.max(columns, rows), channel), scale = mean > 0 ? mean : 1;
                 const relative = difference.relativeTo(scale);
                 verdict.differences.push(relative);
                 verdict.smallestDetectable.push(relative.smallestDetectable(sidak(level, 3), POWER));
                 verdict.isBiased ||= relative.pValue < sidak(level, 3);
                 return scale;
             });
-            const worst = (x, y, edge) => [0, 1, 2].map(channel => {
-                const floor = TILE_FLOOR * scales[channel], { mean, difference } = this.difference(x, y, edge, channel);
-                difference.standardError = Math.hypot(difference.standardError, floor);
-                return difference.relativeTo(Math.max(mean, floor));
-            }).reduce((a, b) => Math.abs(b.z) > Math.abs(a.z) ? b : a);
-            for (let y = 0; y < rows; ++y) for (let x = 0; x < columns; ++x) verdict.map.push(worst(x, y, 1).z);
+            const worst = (x, y, edge) => {
+                const relative = scales.map((scale, channel) => {
+                    const floor = TILE_FLOOR * scale, {mean, difference} = this.difference(x, y, edge, channel);
+                    difference.standardError = Math.hypot(difference.standardError, floor);
+                    return difference.relativeTo(Math.max(mean, floor));
+                });
+                return relative.reduce((a, b) => Math.abs(b.z) > Math.abs(a.z) ? b : a);
+            };
+            for (let y = 0; y < rows; ++y)
+                for (let x = 0; x < columns; ++x) verdict.map.push(worst(x, y, 1).z);
             const edge = this.finestReliableEdge();
             if (edge > 0) {
                 verdict.tileSize = edge * TILE * this.scale;
@@ -160,11 +177,13 @@ live.statistics = (() => {
         get text() {
             const v = this.verdict;
             if (!v) return `no verdict before ${this.nextSamples} samples a pixel`;
-            if (!v.isBiased)
-                return `agrees with the reference: a bias above ${Number((100 * Math.max(...v.smallestDetectable)).toPrecision(2))} % would show by now`;
-            const text = "biased: " + ["red", "green", "blue"].map((name, c) => `${name} ${intervalText(v.differences[c])}`).join(", ");
-            return text + (v.brightTiles + v.darkTiles === 0 ? "" : `; of ${v.tiles} tiles of ${v.tileSize} pixels, ` +
-                `${v.brightTiles} are too bright and ${v.darkTiles} too dark`);
+            const bias = Number((100 * Math.max(...v.smallestDetectable)).toPrecision(2));
+            if (!v.isBiased) return `agrees with the reference: a bias above ${bias} % would show by now`;
+            const channels = ["red", "green", "blue"].map((name, c) => `${name} ${intervalText(v.differences[c])}`);
+            const text = `biased: ${channels.join(", ")}`;
+            if (v.brightTiles + v.darkTiles === 0) return text;
+            const where = `of ${v.tiles} tiles of ${v.tileSize} pixels`;
+            return `${text}; ${where}, ${v.brightTiles} are too bright and ${v.darkTiles} too dark`;
         }
     }
 
@@ -178,8 +197,8 @@ live.statistics = (() => {
             error += weight * (value - r) ** 2;
             uncertainty += weight * reference.variance[i];
         });
-        return { error: Math.sqrt(Math.max(error - uncertainty, 0) / means.length), means };
+        return {error: Math.sqrt(Math.max(error - uncertainty, 0) / means.length), means};
     }
 
-    return { LiveVerdict, relativeError, erfc, normalQuantile, normalPValue, sidak };
+    return {LiveVerdict, relativeError, erfc, normalQuantile, normalPValue, sidak};
 })();
