@@ -19,6 +19,7 @@ class Keyword(NamedTuple):
     member: str
     default: float
     is_albedo: bool
+    is_lobe: bool
 
 
 def keyword(row):
@@ -31,6 +32,7 @@ def keyword(row):
         member[1] if member else "",
         float(default[1]) if default else 0.0,
         "is_albedo = true" in rest,
+        ".feature" in rest,
     )
 
 

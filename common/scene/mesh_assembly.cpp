@@ -171,8 +171,11 @@ class Assembly {
         }
         const double largest = std::max({albedo.x, albedo.y, albedo.z});
         if (largest <= 1) return;
-        scene_.warnings.push_back(obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " + names +
-                                  (names.find(' ') == names.npos ? " is" : " are") + " divided by " + std::to_string(largest));
+        constexpr double noteworthy = 1e-6;  // more than 32 bits round: 0.2 + 0.8 exceeds 1, too
+        if (largest > 1 + noteworthy)
+            scene_.warnings.push_back(obj.file + ": material " + in_quotes(name) + " reflects more than it receives: " + names +
+                                      (names.find(' ') == names.npos ? " is" : " are") + " divided by " +
+                                      std::to_string(largest));
         // Rounded down, so that rounding errors cannot push the sum above 1.
         constexpr double rounding = 1 - 0x1p-23;
         for (const MaterialKeyword& keyword : material_keywords)

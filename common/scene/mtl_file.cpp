@@ -170,7 +170,8 @@ MtlMaterial make_material(const std::string& file, const Stated& stated, const s
     if (is_opaque && has_texture && material.diffuse_albedo == vec3(0))
         warnings.push_back(subject + "Kd 0 makes map_Kd black, as they are multiplied: set Kd 1 1 1 to see the texture");
     const Microfacets microfacets = read_microfacets(subject, stated, warnings);
-    if (stated.has("Pr")) material.specular_albedo = vec3(0);  // microfacets replace the Phong lobe
+    for (const MaterialKeyword& keyword : material_keywords)  // microfacets replace lobes
+        if (keyword.member.feature && stated.has("Pr")) material.*keyword.member.colour = vec3(0);
     return {stated.name, material, has_texture ? texture_folder / stated.texture : "", microfacets};
 }
 

@@ -22,7 +22,7 @@ TOPICS = {  # heading: sources
         "shaders/world/scene.glsl",
         "shaders/world/brdf.glsl",
         "shaders/world/materials.glsl",
-        "shaders/world/materials/phong.glsl",
+        *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "shaders/world/materials").glob("*.glsl")),
     ],
     "Lights and the background": ["shaders/world/lights.glsl", "shaders/world/background.glsl", "shaders/world/light_probe.glsl"],
     "Media": ["shaders/world/boundaries.glsl"],

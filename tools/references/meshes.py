@@ -82,7 +82,9 @@ def read_mtl(path, texture_folder, files):
             material.roughness = max(float(stated["Pr"][0]), 0.01) ** 2
             material.metalness = float(stated.get("Pm", [0])[0])
             material.coat_index = float(stated.get("Ni", [1.5])[0])
-            material.specular_albedo = np.zeros(3)
+            for keyword in KEYWORDS:
+                if keyword.is_lobe:  # microfacets replace it
+                    setattr(material, keyword.member, np.zeros(3))
         materials.setdefault(material.name, material)
     return materials
 
