@@ -53,8 +53,8 @@ inline constexpr MaterialKeyword material_keywords[] = {
 // The fraction of light that an opaque material without microfacets reflects, all lobes together.
 inline vec3 albedo_of(const Material& material) {
     vec3 sum(0);
-    for (const auto& [name, count, largest, meaning, if_missing, member] : material_keywords)
-        if (member.is_albedo) sum += material.*member.colour;
+    for (const MaterialKeyword& keyword : material_keywords)
+        if (keyword.member.is_albedo) sum += material.*keyword.member.colour;
     return sum;
 }
 

@@ -161,9 +161,10 @@ MtlMaterial make_material(const std::string& file, const Stated& stated, const s
     const bool has_texture = !stated.texture.empty(), is_opaque = !(stated.opacity() < 1);
     Material material{};
     material.albedo_texture = -1;
-    for (const auto& [name, count, largest, meaning, if_missing, member] : material_keywords) {
-        if (member.colour) material.*member.colour = stated.vector(name, vec3(0));
-        if (member.number) material.*member.number = stated.number(name, member.default_number);
+    for (const MaterialKeyword& keyword : material_keywords) {
+        const MaterialMember& member = keyword.member;
+        if (member.colour) material.*member.colour = stated.vector(keyword.name, vec3(0));
+        if (member.number) material.*member.number = stated.number(keyword.name, member.default_number);
     }
     if (has_texture && !stated.has("Kd")) material.diffuse_albedo = vec3(1);
     if (!is_opaque) make_dielectric(subject, stated, material, warnings);

@@ -18,6 +18,12 @@ from shown_facts import seen
 LINE = 100  # characters
 
 
+def graded(diagnosis, value=-0.2):
+    """The result of a submission whose only picture differs by this fraction."""
+    scene = {"scene": "room", "verdict": "biased", "image": [{"value": value, "is_biased": True}], "tiles": []}
+    return {"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": diagnosis, "scenes": [scene]}
+
+
 class NamesTest(unittest.TestCase):
     KNOWN = {
         "twice": {"shows": {"angle": "2 2 2"}},
@@ -106,18 +112,11 @@ class SimilarNamesTest(unittest.TestCase):
             "next": None,
             "mistakes": [{"hint": f"{n}?", "slide": "s"} for n in (1, 2)],
         }
-        scene = {"scene": "room", "verdict": "biased", "image": [{"value": -0.2, "is_biased": True}], "tiles": []}
         for fits, heads, first in (
             (False, ["seen", "not sure", "maybe", "maybe", "read again"], "room is too dark (by up to -20 %)"),
             (True, ["seen", "or", "read again", "not sure"], "1?"),
         ):
-            result = {
-                "chapter": 3,
-                "verdict": "biased",
-                "unfinished_line": None,
-                "diagnosis": found | {"fits": fits},
-                "scenes": [scene],
-            }
+            result = graded(found | {"fits": fits})
             self.assertEqual([head for head, _ in hint_lines(result)], heads)
             self.assertEqual(headline(result), ("biased", first))
 
@@ -129,11 +128,7 @@ class SimilarNamesTest(unittest.TestCase):
             (-9e36, "has values that no light has"),
             (float("nan"), "has values that no light has"),
         ):
-            scene = {"scene": "room", "verdict": "biased", "image": [{"value": value, "is_biased": True}], "tiles": []}
-            self.assertIn(
-                words,
-                headline({"chapter": 3, "verdict": "biased", "unfinished_line": None, "diagnosis": found, "scenes": [scene]})[1],
-            )
+            self.assertIn(words, headline(graded(found, value))[1])
 
     def test_a_single_name_that_may_fit_is_no_headline_and_leaves_the_next_experiment(self):
         found = {
@@ -142,15 +137,8 @@ class SimilarNamesTest(unittest.TestCase):
             "next": "./lab run 3",
             "mistakes": [{"hint": "1?", "slide": "s"}],
         }
-        scene = {"scene": "room", "verdict": "biased", "image": [{"value": -0.2, "is_biased": True}], "tiles": []}
         for fits, heads in ((False, ["seen", "not sure", "maybe", "read again", "next"]), (True, ["seen", "read again"])):
-            result = {
-                "chapter": 3,
-                "verdict": "biased",
-                "unfinished_line": None,
-                "diagnosis": found | {"fits": fits},
-                "scenes": [scene],
-            }
+            result = graded(found | {"fits": fits})
             self.assertEqual([head for head, _ in hint_lines(result)], heads)
             self.assertEqual(headline(result)[1] == "1?", fits)
 

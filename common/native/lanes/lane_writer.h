@@ -44,7 +44,7 @@ class LaneWriter : public Writer {
     std::string part(const Sequence& sequence, int depth);
 
     const Variance variance_;
-    int depth_ = 0;    // of branches around us that only some lanes may take
+    int depth_ = 0;    // of branches around that only some lanes may take
     int returns_ = 0;  // that some lanes do and others do not, so far in the function
     int jumps_ = 0;    // of that kind, so far in the loop or in the cases
     struct Open {      // a loop
