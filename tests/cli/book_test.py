@@ -14,7 +14,7 @@ from urllib.parse import unquote
 
 from tools_path import PROJECT, TOOLS  # first: it finds the others
 import numpy as np
-from book import readability, search
+from book import search
 from browser import CHROMIUM, Browser
 from project import CHAPTERS
 
@@ -277,42 +277,3 @@ class CopiesTest(unittest.TestCase):
             pages = subprocess.run(listed, cwd=project, capture_output=True, text=True, check=True).stdout
         self.assertIn("chapters/01_uniform_sampling/README.md", pages)
         self.assertNotIn("20_mine", pages)
-
-
-class ReadabilityTest(unittest.TestCase):
-    def test_pages_can_be_finished(self):
-        most = {"docs/results.md": 1800, "docs/first_steps.md": 1600, "docs/teaching.md": 2000} | {
-            f"chapters/{folder}/README.md": 1500 for folder in CHAPTERS.values()
-        }
-        for page, words in most.items():
-            self.assertLessEqual(readability.length((PROJECT / page).read_text(encoding="utf-8")), words, page)
-
-    def test_less_than_is_no_tag(self):
-        self.assertEqual(readability.length("For $a < 1$ one two three. Press `B > C` four five."), 5 + 4)
-
-    def test_sentences_are_text_without_code_tables_and_formulas(self):
-        text = """# A heading of many words
-
-One two `three. four` five. Six [seven eight](link.md) $a + b$ nine!
-
-| a table | with cells |
-|---|---|
-
-    indented code is no text
-
-1. *Fill in.* Ten eleven twelve.
-2. Thirteen fourteen fifteen
-$$
-x = 1
-$$
-```sh
-code
-```
-"""
-        counts = [readability.count_words(sentence) for sentence in readability.sentences(text)]
-        self.assertEqual(counts, [4, 5, 3, 3])
-        self.assertEqual(readability.measure(text)[0], 3.5)
-
-    def test_long_sentences_are_named(self):
-        words = "word " * readability.LONGEST_GOAL
-        self.assertEqual(readability.measure(f"{words}.\n\n{words}more.\n")[1], [(readability.LONGEST_GOAL + 1, f"{words}more.")])

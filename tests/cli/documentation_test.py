@@ -4,6 +4,7 @@ What is checked: a link to a source file whose text is `code` quotes that file; 
 `Suite.Test` is a test; a line or a `piece` that starts with ./lab is a command.
 """
 
+import json
 import os
 import re
 import shlex
@@ -32,6 +33,7 @@ SECTIONS = [
     "Exercises",
     "Summary",
 ]  # of each chapter's page, in this order
+MOST_LINES = 234  # of a chapter, which is read in one sitting
 SOURCE_SUFFIXES = {".h", ".cpp", ".glsl", ".comp", ".rgen", ".rchit", ".rmiss", ".py"}
 SIZE = ("--width", "--height")
 SMALL_RENDER = {"--width": "8", "--height": "8", "--samples": "1", "--backend": "compute", "--output": "picture.png"}
@@ -157,6 +159,7 @@ class DocumentationTest(unittest.TestCase):
         suites = {suite for suite, _ in cited_tests.written_tests()}
         for chapter in COURSE:  # chapters added by others may have different pages
             text = text_of(ROOT / "chapters" / chapter / "README.md")
+            self.assertLessEqual(len(text.splitlines()), MOST_LINES, f"{chapter}/README.md")
             for part in (
                 "\n    ./lab run ",
                 "\n![",
@@ -185,6 +188,14 @@ class DocumentationTest(unittest.TestCase):
                 line.strip() for block in re.findall(r"```glsl\n(.*?)```", open_text, re.DOTALL) for line in block.splitlines()
             }
             self.assertEqual({line.strip() for line in solution.splitlines() if re.search(r"\w", line)} & shown, set(), chapter)
+
+    def test_mistakes_name_a_slide_or_a_section_of_their_page(self):
+        for chapter in COURSE:
+            headings = re.findall(r"^###? (.*)$", text_of(ROOT / "chapters" / chapter / "README.md"), re.MULTILINE)
+            for mistake in json.loads(text_of(ROOT / "chapters" / chapter / "mistakes.json")):
+                self.assertTrue(
+                    "slide" in mistake or mistake.get("section", headings[0]) in headings, f"{chapter}: {mistake['name']}"
+                )
 
     def test_every_exercise_has_a_solution(self):
         for chapter in COURSE:  # for exercise 1 it is the chapter's shader

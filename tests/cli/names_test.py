@@ -110,7 +110,7 @@ class SimilarNamesTest(unittest.TestCase):
             "facts": [{"text": "f", "evidence": ["long"]}],
             "right": [],
             "next": None,
-            "mistakes": [{"hint": f"{n}?", "slide": "s"} for n in (1, 2)],
+            "mistakes": [{"hint": f"{n}?", "slide": "s", "section": None} for n in (1, 2)],
         }
         for fits, heads, first in (
             (False, ["seen", "not sure", "maybe", "maybe", "read again"], "room is too dark (by up to -20 %)"),
@@ -119,6 +119,15 @@ class SimilarNamesTest(unittest.TestCase):
             result = graded(found | {"fits": fits})
             self.assertEqual([head for head, _ in hint_lines(result)], heads)
             self.assertEqual(headline(result), ("biased", first))
+
+    def test_what_to_read_is_a_slide_or_from_where_the_lecture_ends_a_section(self):
+        found = {"facts": [], "right": [], "next": None, "fits": True}
+        for slide, section, page in (
+            ("Dielectrics", None, r"^Dielectrics \(docs/slides.md\), chapters/03_\w+/README.md$"),
+            (None, "Smoke", r"^chapters/03_\w+/README.md: Smoke$"),
+        ):
+            mistakes = [{"hint": "?", "slide": slide, "section": section}]
+            self.assertRegex(dict(hint_lines(graded(found | {"mistakes": mistakes})))["read again"], page)
 
     def test_what_is_no_light_has_no_percentage(self):
         found = {"facts": [], "right": [], "next": None, "mistakes": [], "fits": False}
@@ -135,7 +144,7 @@ class SimilarNamesTest(unittest.TestCase):
             "facts": [{"text": "f", "evidence": ["long"]}],
             "right": [],
             "next": "./lab run 3",
-            "mistakes": [{"hint": "1?", "slide": "s"}],
+            "mistakes": [{"hint": "1?", "slide": "s", "section": None}],
         }
         for fits, heads in ((False, ["seen", "not sure", "maybe", "read again", "next"]), (True, ["seen", "read again"])):
             result = graded(found | {"fits": fits})

@@ -167,7 +167,9 @@ def reason(facts, sights, known, is_correct):
         "fits": bool(fitting),
         "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
         "is_noisy": noisy,
-        "mistakes": [{"name": name} | {key: known["mistakes"][name][key] for key in ("hint", "slide")} for name in names],
+        "mistakes": [
+            {"name": name} | {key: known["mistakes"][name].get(key) for key in ("hint", "slide", "section")} for name in names
+        ],
         "readings": {name: [[r.at, round(r.value, 4), round(r.error, 4)] for r in seen.readings] for name, seen in facts.items()},
     }
 

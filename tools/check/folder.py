@@ -133,7 +133,10 @@ def causes(chapter, result):
         return []
     if not (found["fits"] and questions(result)):
         return ["no single common mistake fits: see what was seen of each"]
-    pages = [f"{mistake['slide']}; chapters/{CHAPTERS[teaching(chapter, mistake)]}/README.md" for mistake in found["mistakes"]]
+    pages = [
+        f"{mistake['slide'] or mistake['section']}; chapters/{CHAPTERS[teaching(chapter, mistake)]}/README.md"
+        for mistake in found["mistakes"]
+    ]
     return [f"{question} ({page})" for question, page in zip(questions(result), pages)]
 
 

@@ -118,8 +118,13 @@ def hint_lines(result):
     else:
         lines += [("or", question) for question in asked[1:]]
     if asked:
-        slides = "; ".join(dict.fromkeys(mistake["slide"] for mistake in mistakes))
-        lines.append(("read again", f"{slides} (docs/slides.md), chapters/{CHAPTERS[result['chapter']]}/README.md"))
+        slides, sections = (
+            "; ".join(dict.fromkeys(mistake[key] for mistake in mistakes if mistake[key])) for key in ("slide", "section")
+        )
+        page = f"chapters/{CHAPTERS[result['chapter']]}/README.md"
+        lines.append(
+            ("read again", (f"{slides} (docs/slides.md), " if slides else "") + page + (f": {sections}" if sections else ""))
+        )
     if len(mistakes) > 1 and found["fits"]:
         lines.append(("not sure", f"{len(mistakes)} common mistakes show the same in all experiments"))
     if found["next"] and not (found["fits"] and len(mistakes) == 1):
