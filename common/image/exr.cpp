@@ -260,7 +260,10 @@ void write_exr(const std::filesystem::path& file, const ExrFile& exr) {
         require(file, exr_encoding_choose_default_routines(context, 0, &encoder));
         encoder.yield_until_ready_fn = encoder.write_fn = nullptr;  // blocks are written below, in order
         require(file, exr_encoding_run(context, 0, &encoder));
-        blocks[begin / piece].assign(static_cast<const char*>(encoder.compressed_buffer), encoder.compressed_bytes);
+        // A block of the full size is read as it is. (3.1) also writes a compressed one that happens to have that size.
+        const bool is_smaller = encoder.compressed_bytes < encoder.packed_bytes;
+        blocks[begin / piece].assign(static_cast<const char*>(is_smaller ? encoder.compressed_buffer : encoder.packed_buffer),
+                                     encoder.compressed_bytes);
         require(file, exr_encoding_destroy(context, &encoder));
     });
     for (size_t i = 0; i < blocks.size(); ++i)
