@@ -45,7 +45,7 @@ vec2 sample_disc(vec2 u) {
 }
 
 // The camera ray x_0, ω_0 of a random point of a pixel and a random point of the aperture. All rays through the same point of the
-// image meet where the pinhole's ray hits the plane in focus, at the distance f along the viewing direction. It is a plane and no
+// image meet where the pinhole's ray hits the plane in focus, at the distance z_f along the viewing direction. It is a plane and no
 // sphere, since a thin lens maps the plane of the sensor to a plane.
 Ray sample_camera_ray(uvec2 pixel, inout uvec2 seed) {
     Camera camera = parameters.camera;

@@ -4,6 +4,7 @@
 #include "07_multiple_importance_sampling/extend_path.glsl"
 #else
 #include "flights.glsl"
+#include "smoke.glsl"
 #include "medium.glsl"
 #include "equiangular.glsl"
 #include "scatter.glsl"
@@ -36,17 +37,22 @@ void add_light(inout Path path, uint bounces, vec3 radiance) {
 
 // Extends the path by one bounce and adds the radiance that it finds. Returns false where the path ends.
 bool extend_path(inout Path path, inout uvec2 seed) {
-    // A free flight along x_{k-1}, ω_{k-1} ends in the medium or at the next surface. One that ends within rounding errors of a
-    // surface ends there, so that hardly any collision lies behind it.
     Hit hit;
     bool is_hit = trace_ray(path.ray, NO_LIMIT, hit);
-    float t_max = is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT;
-    float flight = sample_flight(get_medium(path.medium), path.ray, t_max, seed);
-    bool is_collision = flight < t_max;
     if (!is_hit && path.medium != 0u) return false;  // its mesh is not closed
+    Medium medium = get_medium(path.medium);
     Segment segment = Segment(path.ray, is_hit ? hit.distance : FARTHEST, path.medium);
-    bool has_angles = STRATEGY != STRATEGY_BOUNCES && samples_angles(get_medium(path.medium));
+    bool has_angles = STRATEGY != STRATEGY_BOUNCES && samples_angles(medium);
     if (has_angles && path.path_length < parameters.max_path_length) add_light(path, 1u, sample_segment(segment, seed));
+
+    // A free flight along ω_{k-1} ends in a collision, or at the next surface. One that ends within rounding errors of a surface
+    // ends there, so that hardly any collision lies behind it.
+    float t_max = is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT;
+    float flight = NO_LIMIT;
+    if (has_grid(medium)) flight = track_flight(medium, path.ray, t_max, seed);
+    else if (medium.extinction > 0.0) flight = get_flight_depth(get_random_words(seed).x) / medium.extinction;
+    bool is_collision = flight < t_max;
+    if (is_collision) path.throughput *= medium.albedo;
 
     if (!is_hit && !is_collision) {
         float light_density = path.receiver.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
@@ -79,7 +85,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
         add_light(path, 0u, get_bounce_part(light_density, path.bounce_density) * s.emission);
         if (!is_above_surface(s, s.out_direction)) return false;
     }
-    if (path.path_length == parameters.max_path_length) return false;
+    if (path.path_length == parameters.max_path_length || path.throughput == vec3(0.0)) return false;
 
     // The direct light at x_k, at a surface or in the medium.
     path.receiver = get_receiver(s);

@@ -36,6 +36,13 @@ ShadingData get_medium_point(vec3 position, vec3 ray_direction) {
 // Whether a path scatters in a medium there, not at a surface.
 bool is_in_medium(ShadingData s) { return s.normal == vec3(0.0); }
 
+// The fraction of light that does not collide between the ray's origin and t_max, by Beer's law, or an estimate of it.
+float get_transmittance_of(Medium medium, Ray ray, float t_max, inout uvec2 seed) {
+    if (has_grid(medium)) return track_transmittance(medium, ray, t_max, seed);
+    // Without an end t_max is so large that its product with a length may be infinite, and 0 times that is no number.
+    return medium.extinction > 0.0 ? exp(-medium.extinction * t_max * length(ray.direction)) : 1.0;
+}
+
 // The fraction of light that gets through, from the ray's origin to t_max: 0 behind a surface. It goes on through open boundaries.
 float get_transmittance(Ray ray, float t_max, uint medium, inout uvec2 seed) {
 #ifdef FEATURE_OPEN_BOUNDARIES

@@ -1,8 +1,9 @@
 // Scattering at a surface or in a medium, and light samples for both.
 
-// What multiplies the radiance from a direction where a path scatters: ρ n·ω at a surface, the phase function in a medium.
+// What multiplies the radiance from a direction where a path scatters: ρ n·ω at a surface, the phase function in a medium, whose
+// albedo the throughput contains.
 vec3 get_scattering(ShadingData s, Medium medium, vec3 omega) {
-    if (is_in_medium(s)) return medium.albedo * get_phase(medium, -s.out_direction, omega);
+    if (is_in_medium(s)) return vec3(get_phase(medium, -s.out_direction, omega));
     return is_above_surface(s, omega) ? get_brdf(s, omega) * dot(s.normal, omega) : vec3(0.0);
 }
 
@@ -11,11 +12,11 @@ float get_scattering_density(ShadingData s, Medium medium, vec3 omega) {
     return is_in_medium(s) ? get_phase(medium, -s.out_direction, omega) : get_bsdf_density(s, omega);
 }
 
-// Samples ω_k. The phase function is sampled exactly, so the weight of a collision is the albedo.
+// Samples ω_k. The phase function is sampled exactly, so its weight is 1.
 BsdfSample sample_scattering(ShadingData s, Medium medium, inout uvec2 seed) {
     if (!is_in_medium(s)) return sample_bsdf(s, seed);
     vec3 omega = sample_phase(medium, -s.out_direction, get_random_numbers(seed));
-    return BsdfSample(omega, medium.albedo, get_phase(medium, -s.out_direction, omega), 1.0);
+    return BsdfSample(omega, vec3(1.0), get_phase(medium, -s.out_direction, omega), 1.0);
 }
 
 // The light that arrives at x_k from one direction, dimmed by the media on its way and scattered along ω_o. A light sample found
@@ -71,13 +72,14 @@ vec3 sample_scattered_light(ShadingData s, Sides sides, inout uvec2 seed) {
 
 // Estimates the light of lamps that is scattered once along a segment.
 vec3 sample_segment(Segment segment, inout uvec2 seed) {
-    float extinction = get_medium(segment.medium).extinction;
-    if (extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
+    Medium medium = get_medium(segment.medium);
+    if (medium.extinction == 0.0 || !HAS_LIGHT_TRIANGLES || chooses_probe(seed)) return vec3(0.0);
     vec2 u;
     LightTriangle light = choose_light_triangle(seed, u);
     LightPoint y = get_lamp_point(light, u);
     Angles angles = get_angles(segment, y.position);
     float t = sample_distance(angles, segment.t_max, get_random_numbers(seed).x);
     ShadingData s = get_medium_point(segment.ray.origin + t * segment.ray.direction, segment.ray.direction);
-    return scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, get_distance_ratio(angles, extinction, t), seed);
+    float distance_ratio = get_distance_ratio(angles, medium.extinction, t);
+    return medium.albedo * scatter_lamp(s, Sides(segment.medium, segment.medium), light, y, distance_ratio, seed);
 }

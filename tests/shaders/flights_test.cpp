@@ -40,8 +40,6 @@ TEST(FreeFlights, AreTheLogarithmOfTheirRandomWord) {
     for (size_t i = 0; i < inputs.size(); ++i) worst = std::max(worst, std::abs(double{flights[i]} / expected[i] - 1));
     std::printf("  largest relative error of %zu flights %.2g\n", inputs.size(), worst);
     EXPECT_LT(worst, 5e-4);  // Vulkan allows log() an error of 2^-21
-    inputs = {{state_with(12345), 0.0f}, {state_with(0), 0.0f}};
-    for (const float flight : sample_flights(inputs)) EXPECT_EQ(flight, std::numeric_limits<float>::max());
 }
 
 // In a thin medium few of the 2^32 words let a flight end within one unit of length: their part is the probability.

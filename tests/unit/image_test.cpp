@@ -116,7 +116,8 @@ TEST(Exr, BlocksThatCompressionLeavesAtTheirSizeAreKept) {
             std::ranges::fill_n(written.image.pixels.begin(), static_cast<std::ptrdiff_t>(3 * black), 0.0f);
             write_exr(folder / "a.exr", written);
             const ExrFile read = read_exr(folder / "a.exr");
-            EXPECT_EQ(std::memcmp(read.image.pixels.data(), written.image.pixels.data(), 3 * 16 * 16 * sizeof(float)), 0) << black;
+            EXPECT_EQ(std::memcmp(read.image.pixels.data(), written.image.pixels.data(), 3 * 16 * 16 * sizeof(float)), 0)
+                << black;
         }
 }
 
