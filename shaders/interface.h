@@ -101,7 +101,7 @@ struct Microfacets {
 struct Medium {
     float extinction;  // collisions per unit of world length where the density is 1; 0 is vacuum
     vec3 albedo;       // fraction of the light that a collision scatters, in [0,1]; the rest is absorbed
-    float anisotropy;  // mean cosine of the angle by which it changes its direction, in (-1,1)
+    float anisotropy;  // mean cosine of the angle by which a collision turns light, in (-1,1)
     // The density is 1, or it comes from a grid: known at the centres of cells, trilinear in between, 0 outside of its box.
     uvec3 grid_size;        // cells along each axis; 0 without a grid
     uint first_density;     // index of its first cell
@@ -136,13 +136,14 @@ struct Instance {
 struct LightTriangle {
     uint instance;          // index into the scene's placements of meshes
     uint triangle;          // index into the scene's triangles
-    uint threshold;         // this entry stands for itself if a random 32-bit word is below, else its `alias` does
+    uint threshold;         // this entry is chosen if a random 32-bit word is below this, else its `alias`
     uint alias;             // index into the table
     float inverse_density;  // A/P: area in square scene units over the probability of being chosen
 };
 
 // A node of the tree over emissive triangles, see common/scene/light_tree.h: what it knows of each of its four children. A place
-// without a child has no power.
+// without a child has no power. All powers have the squared radius of all triangles as a factor, so that every quotient stays in
+// the range of float.
 struct LightNode {
     vec4 centre_x;       // x of the centre of a sphere around the child's triangles, in world space
     vec4 centre_y;       // its y
@@ -152,8 +153,7 @@ struct LightNode {
     vec4 mean_normal_y;  // its y
     vec4 mean_normal_z;  // its z
     vec4 spread;         // the largest distance between it and the unit normal of a triangle
-    vec4 power;          // area times luminance, as a share of the scene's; times the squared radius of all triangles, so that no
-                         // quotient leaves the range of float
+    vec4 power;          // area times luminance, as a share of the scene's, times the squared radius of all triangles
     uvec4 child;         // the child's index; of a leaf, IS_LIGHT_LEAF + index of its LightTriangle
 };
 // From this number on a child of a LightNode is a leaf.
@@ -161,7 +161,7 @@ SHARED_CONSTANT IS_LIGHT_LEAF = 0x80000000u;
 
 // What a ray that hits an emissive triangle needs to know of its leaf.
 struct LightLeaf {
-    uint trail;  // from the root downwards, beginning at the lowest bits: two for each node, which of its children is next
+    uint trail;  // the way down from the root, two bits for each node, the lowest first: which of its children is next
     float area;  // of the triangle, in square scene units
 };
 

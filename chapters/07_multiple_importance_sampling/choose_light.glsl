@@ -5,7 +5,7 @@ struct Receiver {
     bool is_light_sampled;  // whether that light sample could have found what the ray hits
 };
 
-// That of camera rays: no light sample is taken at the camera.
+// The receiver of a camera ray: no light sample is taken at the camera.
 const Receiver NO_RECEIVER = Receiver(false);
 
 // The receiver x_k. No light sample meets a dielectric's directions.

@@ -4,7 +4,7 @@
 
 // The GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007): the area D(m)
 // of facets with the normal m, for each solid angle and each area of the surface, so that ∫ D(m) n·m dm = 1.
-// sin² θ_m comes from the part of m along the surface, which keeps its digits where α is small.
+// The part of m along the surface gives sin² θ_m, and keeps its digits where α is small.
 float get_facet_distribution(ShadingData s, vec3 m) {
     float cos_m = dot(s.normal, m);
     vec3 along = cross(s.normal, m);
@@ -30,7 +30,7 @@ float get_glass_fresnel(ShadingData s, float cos_m) {
     return square > 0.0 ? get_fresnel_reflectance(cos_m, s.relative_index, sqrt(square)) : 1.0;
 }
 
-// The same for an opaque surface, by Schlick's approximation where it is metal: Kd is its colour at normal incidence.
+// Fresnel's reflectance of an opaque surface's facet, by Schlick's approximation where it is metal: Kd at normal incidence.
 vec3 get_fresnel(ShadingData s, float cos_m) {
     float root = max(1.0 - cos_m, 0.0);
     vec3 metal = s.diffuse_albedo + (1.0 - s.diffuse_albedo) * (root * root * root * root * root);
@@ -44,7 +44,7 @@ vec2 get_facet_albedo(ShadingData s, float cos_theta) {
     return mix(microfacets[s.material].albedo[i], microfacets[s.material].albedo[i + 1u], position - float(i));
 }
 
-// What leaves evenly after it has not been reflected by the facets: the diffuse light from below the coat (Kelemen and
+// The diffuse light from below the coat, where light that the facets did not reflect is scattered evenly (Kelemen and
 // Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", Eurographics 2001). Of white light from ω_i it
 // takes the fraction 1 - E(ω_i) that the coat lets through. With the same factor on the way out nothing is lost, and the BRDF
 // is reciprocal.
@@ -69,8 +69,8 @@ struct Facet {
     float cos_o;  // m·ω_o
 };
 
-// They reflect if ω_i is above the surface: m lies along ω_o + ω_i, at the same angle to both. Else they refract: along
-// ω_o + η ω_i.
+// The facets between ω_i and ω_o. They reflect if ω_i is above the surface: m lies along ω_o + ω_i, at the same angle to both.
+// Else they refract: along ω_o + η ω_i.
 Facet get_facet(ShadingData s, vec3 in_direction) {
     bool is_reflected = dot(s.normal, in_direction) > 0.0;
     vec3 sum = s.out_direction + (is_reflected ? 1.0 : s.relative_index) * in_direction;

@@ -1,8 +1,8 @@
 // Three ways to sample a direction.
 const uint SAMPLES_VISIBLE_NORMALS = 0u;  // by the normal of a visible facet
 const uint SAMPLES_NORMALS = 1u;          // by that of any facet
-const uint SAMPLES_COSINES = 2u;          // by the cosine alone, but glass, without diffuse light, still by visible normals
-// The one that --facet-sampling chooses.
+const uint SAMPLES_COSINES = 2u;          // by the cosine alone; glass, which has no diffuse light, still by visible normals
+// How a direction is sampled: one of the constants above, which --facet-sampling chooses.
 #ifndef FACET_SAMPLING
 #define FACET_SAMPLING SAMPLES_VISIBLE_NORMALS
 #endif
@@ -36,7 +36,8 @@ vec3 sample_normal(vec3 out_direction, float alpha, vec2 u) {
     return sample_visible_normal(out_direction, alpha, u);
 }
 
-// With respect to solid angle. The fraction G_1 of the facets is visible, and from ω_o each appears larger by ω_o·m / n·ω_o.
+// The density of sample_normal() with respect to solid angle. The fraction G_1 of the facets is visible, and from ω_o each appears
+// larger by ω_o·m / n·ω_o.
 float get_normal_density(ShadingData s, Facet facet) {
     float distribution = get_facet_distribution(s, facet.normal);
     if (FACET_SAMPLING == SAMPLES_NORMALS) return distribution * dot(s.normal, facet.normal);

@@ -1,17 +1,17 @@
 // Where a light sample is taken along a ray in a medium.
 const uint SAMPLES_FLIGHTS = 0u;  // where the path collides
 const uint SAMPLES_ANGLES = 1u;   // at a uniform angle, seen from the lamp
-// The one that --distance-sampling chooses.
+// Where light samples are taken: one of the constants above, which --distance-sampling chooses.
 #ifndef DISTANCE_SAMPLING
 #define DISTANCE_SAMPLING SAMPLES_FLIGHTS
 #endif
 
-// The formula needs a density of flights, which a grid does not have.
+// Whether light samples are taken at uniform angles. The formula needs a density of flights, which a grid does not have.
 bool samples_angles(Medium medium) { return DISTANCE_SAMPLING == SAMPLES_ANGLES && !has_grid(medium); }
 
 // Both keep products finite.
 const float FARTHEST = 1e18;        // length of a segment without an end
-const float FARTHEST_DEPTH = 80.0;  // light from beyond this optical depth is none
+const float FARTHEST_DEPTH = 80.0;  // beyond this optical depth no light counts
 
 // The part of a ray that lies in one medium.
 struct Segment {
@@ -37,13 +37,13 @@ Angles get_angles(Segment segment, vec3 y) {
     return Angles(nearest, height, atan(-nearest, height), size);
 }
 
-// The distance t = h tan θ of a uniform angle. Its density with respect to length is h / ((θ_b - θ_a) (h² + (t - t_y)²)), as
-// 1/r² of a light sample, which it cancels.
+// The distance t = t_y + h tan θ of a uniform angle. Its density with respect to length, h / ((θ_b - θ_a) (h² + (t - t_y)²)), is
+// proportional to 1/r² of a light sample, which it cancels.
 float sample_distance(Angles angles, float t_max, float u) {
     return clamp(angles.nearest + angles.height * tan(angles.first + u * angles.size), 0.0, t_max);
 }
 
-// That density over the one of free flights, σ_t exp(-σ_t t): the weights of both kinds of samples need no more.
+// The density of sample_distance() over that of free flights, σ_t exp(-σ_t t): the weights of both kinds of samples need no more.
 float get_distance_ratio(Angles angles, float extinction, float t) {
     float from_nearest = t - angles.nearest;
     float density = angles.height / (angles.size * (angles.height * angles.height + from_nearest * from_nearest));

@@ -13,7 +13,7 @@ struct Receiver {
     vec3 normal;  // light arrives from its side only, or from everywhere if it is 0
 };
 
-// That of camera rays: no light sample is taken at the camera.
+// The receiver of a camera ray: no light sample is taken at the camera.
 const Receiver NO_RECEIVER = Receiver(false, vec3(0.0), vec3(0.0));
 
 // The receiver x_k. No light sample meets a dielectric's directions. A medium has no normal.

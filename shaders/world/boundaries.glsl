@@ -3,14 +3,14 @@
 // The media on the two sides of what a path meets. They differ at boundaries only.
 struct Sides {
     uint here;    // index of the one on the ray's side
-    uint beyond;  // of the one on the other side
+    uint beyond;  // index of the one on the other side
 };
 
 // A ray that goes on behind what it hits, whatever that is.
 Ray get_ray_behind(Hit hit, vec3 direction) { return get_ray_from_surface(get_shading_data(hit, direction), direction); }
 
 #ifdef FEATURE_BOUNDARIES
-// Those of a boundary, as if no other body overlapped with its own.
+// The sides of one boundary, as if no other body overlapped with its body.
 Sides get_sides_of(Boundary boundary, Hit hit, vec3 ray_direction) {
     bool is_front = dot(get_surface_point(hit).geometric_normal, ray_direction) < 0.0;
     return is_front ? Sides(boundary.before, boundary.behind) : Sides(boundary.behind, boundary.before);
@@ -18,7 +18,7 @@ Sides get_sides_of(Boundary boundary, Hit hit, vec3 ray_direction) {
 #endif
 
 #ifdef FEATURE_OVERLAPS
-// Whether a ray starts in a body: whether it leaves that before it enters it.
+// Whether a ray starts in a body, which it does if it leaves the body before it enters it.
 bool starts_in(uint body, Ray ray) {
     Hit hit;
     while (trace_ray(ray, NO_LIMIT, hit)) {
@@ -31,7 +31,7 @@ bool starts_in(uint body, Ray ray) {
 }
 #endif
 
-// A ray knows its medium only from its path, or from the next boundary, as here. An opaque surface has the same on both sides.
+// The media on both sides of what a ray hits: those of a boundary, or on an opaque surface twice `medium`, which its path knows.
 Sides get_sides(Hit hit, vec3 ray_direction, uint medium) {
     Sides sides = Sides(medium, medium);
 #ifdef FEATURE_BOUNDARIES
@@ -51,12 +51,12 @@ Sides get_sides(Hit hit, vec3 ray_direction, uint medium) {
     return sides;
 }
 
-// The medium at a direction's origin on a surface or in a medium.
+// The medium that a direction leads into, from a surface or from a point in a medium.
 uint get_side(Sides sides, ShadingData s, vec3 direction) {
     return dot(s.geometric_normal, direction) < 0.0 ? sides.beyond : sides.here;
 }
 
-// Whether what a ray hits is no surface, but only the end of a medium.
+// Whether a ray hits no surface here, but only the end of a medium.
 bool is_open_boundary(Hit hit) {
 #ifdef FEATURE_OPEN_BOUNDARIES
     return get_boundary(hit.instance, hit.triangle).kind == BOUNDARY_OPEN;
@@ -65,7 +65,7 @@ bool is_open_boundary(Hit hit) {
 #endif
 }
 
-// The medium where a camera ray starts: the one on this side of the next boundary, behind all that stands in front of it.
+// The medium where a camera ray starts: the one before the first boundary that it meets, however many surfaces come first.
 uint find_medium(Ray ray) {
 #ifdef FEATURE_BOUNDARIES
     Hit hit;

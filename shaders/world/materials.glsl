@@ -9,7 +9,7 @@ struct BsdfSample {
     float radiance_scale;   // the change of radiance at a refraction: 1/η², else 1
 };
 
-// The sum of the lobes of an opaque surface: light that it scatters evenly, ρ = Kd / π, and what the scene has besides.
+// The sum of the lobes of an opaque surface: the diffuse one, ρ = Kd / π, and whatever else the scene has.
 vec3 get_lobes_brdf(ShadingData s, vec3 in_direction) {
     vec3 brdf = s.diffuse_albedo / PI;
 #ifdef FEATURE_SPECULAR
