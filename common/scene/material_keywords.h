@@ -33,7 +33,7 @@ inline constexpr MaterialKeyword material_keywords[] = {
     {"Kd", 3, any_number, "diffuse albedo; with `Pm` 1, the colour of the metal", "black, or white with `map_Kd`",
      {.colour = &Material::diffuse_albedo, .is_albedo = true}},
     {"map_Kd", 0, 0, "texture that is multiplied with `Kd`, in sRGB", "no texture"},
-    {"Ke", 3, any_number, "emitted radiance: a lamp, which shines from the side from which its corners go counter-clockwise", "0",
+    {"Ke", 3, any_number, "emitted radiance: a lamp, which shines from its front only", "0",
      {.colour = &Material::emission}},
     {"Ks", 3, any_number, "albedo of the Phong lobe, where the scene has `specular`", "0",
      {.colour = &Material::specular_albedo, .is_albedo = true, .feature = "FEATURE_SPECULAR"}},

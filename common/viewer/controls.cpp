@@ -227,10 +227,19 @@ void Controls::draw_camera(Session& session, CameraControl& camera_control) {
     CameraPose pose = session.camera();
     if (ImGui::SliderFloat("field of view", &pose.vertical_fov, 1, 150, "%.0f degrees", ImGuiSliderFlags_AlwaysClamp))
         session.set_camera(pose);
-    const float distance = session.build().job.parameters.camera.focus_distance;
-    if (session.chapter().handles.lens && ImGui::SliderFloat("aperture diameter", &pose.aperture_diameter, 0, 0.25f * distance,
-                                                             "%.3g", ImGuiSliderFlags_AlwaysClamp))
-        session.set_camera(pose);
+    if (session.chapter().handles.lens) {
+        float distance = session.build().job.parameters.camera.focus_distance;
+        if (ImGui::SliderFloat("aperture diameter", &pose.aperture_diameter, 0, 0.25f * distance, "%.3g",
+                               ImGuiSliderFlags_AlwaysClamp))
+            session.set_camera(pose);
+        // By 1 % a pixel, in scenes of any size.
+        if (ImGui::DragFloat("focus distance", &distance, 0.01f * distance, 1e-30f, 1e30f, "%.3g",
+                             ImGuiSliderFlags_AlwaysClamp)) {
+            pose.focus_distance = distance;
+            session.set_camera(pose);
+        }
+        focus_field_ = {ImGui::GetItemRectMin().x + 20, ImGui::GetItemRectMin().y + 5};
+    }
     const auto copy = [&](const char* button, const std::string& text) {
         if (!ImGui::Button(button)) return;
         ImGui::SetClipboardText(text.c_str());

@@ -15,9 +15,10 @@ class Controls {
     // Call between Screen::begin_frame() and Screen::show(). `further` draws more sections of the panel.
     void draw(Session& session, CameraControl& camera_control, const Rectangle& where, double frames_per_second,
               const std::function<void()>& further);
-    int width() const;                               // beside the picture, in framebuffer pixels
-    vec2 seed_field() const { return seed_field_; }  // for tests
-    vec2 lobes_box() const { return lobes_box_; }    // for tests
+    int width() const;                                 // beside the picture, in framebuffer pixels
+    vec2 seed_field() const { return seed_field_; }    // for tests
+    vec2 lobes_box() const { return lobes_box_; }      // for tests
+    vec2 focus_field() const { return focus_field_; }  // for tests
 
   private:
     void draw_actions(Session& session);
@@ -28,7 +29,7 @@ class Controls {
 
     const std::vector<std::filesystem::path> scenes_ = shipped_scenes();
     std::string notice_;  // the latest action
-    vec2 seed_field_{0}, lobes_box_{0};
+    vec2 seed_field_{0}, lobes_box_{0}, focus_field_{0};
 };
 
 }  // namespace lab

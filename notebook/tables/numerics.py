@@ -46,8 +46,9 @@ def measured_text(case, record):
     if percents:
         texts.append(f"finds errors from {max(percents):.2g} %")
     untested = [test for test in case["tests"] if test not in record["tests"]]
-    if untested:
-        texts.append(f"{len(untested)} of {len(case['tests'])} tests not run")
+    if untested:  # they are newer than the record
+        part = f"{len(untested)} of {len(case['tests'])} tests " if len(untested) < len(case["tests"]) else ""
+        texts.append(f"{part}not measured yet")
     return "; ".join(texts) or ("passes" if case["tests"] else "-")
 
 

@@ -224,6 +224,16 @@ Another is code of chapter 7.
                 page,
             )
 
+    def test_bugs_to_find_still_ask(self):
+        """Sentences with ./lab bug are cut: what is asked stands in others."""
+        for number, name in enumerate(CHAPTERS, 1):
+            page = (self.tree(number) / "chapters" / name / "README.md").read_text(encoding="utf-8")
+            bugs = re.findall(r"^\d+\. (\*Find the bug\.\*.*?)\s*(?=^\d+\. |^## )", page, re.DOTALL | re.MULTILINE)
+            self.assertGreater(len(bugs), 0, name)
+            for bug in bugs:
+                with self.subTest(chapter=name):
+                    self.assertTrue(bug.endswith("?"), bug)
+
     def test_its_pages_give_nothing_away(self):
         if not shutil.which("mkdocs"):
             self.skipTest("needs MkDocs, which ./lab book installs")

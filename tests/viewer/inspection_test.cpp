@@ -128,9 +128,9 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
     options.scene.file = scenes / "focus.json";
     options.image.width = 180;
     options.image.height = 120;
-    open(options);
+    open(options, {900, 1000});
     wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
-    click(630, 344);  // a ball
+    click(630, 524);  // a ball
     wait_until("a path", [&] { return inspection().path().has_value() && inspection().path()->vertices.front().is_hit; });
     take_screenshot("viewer_lens");
     const CameraPose before = session().camera();
@@ -147,6 +147,11 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
     const Camera& camera = inspection().parameters().camera;
     EXPECT_NEAR(glm::dot(inspection().path()->vertices.front().position - before.position, camera.forward), camera.focus_distance,
                 0.05f * camera.focus_distance);
+
+    const float focused = session().camera().focus_distance;
+    const vec2 field = viewer_->controls().focus_field();
+    drag(field, field + vec2(30, 0));
+    EXPECT_GT(session().camera().focus_distance, 1.1f * focused);
 }
 
 // A point in fog has no surface to look from.
