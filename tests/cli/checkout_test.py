@@ -97,14 +97,12 @@ class WhatIsBuilt(ProgramTest):
             self.assertRegex(noted, rf"(?m)^ctest .* -R {re.escape(regex)}$")
 
     def test_the_name_of_a_test_may_not_be_missing(self):
-        for arguments in (["test", "-R"], ["test", 3, "-R"]):
-            self.assert_refused(arguments, "-R needs the name of a test", program=self.folder / "tree/lab")
-        self.assert_refused(
-            ["test", "-R", "("],
-            "lab: -R needs a regular expression",
-            program=self.folder / "tree/lab",
-            environment={"PYTHONDONTWRITEBYTECODE": "1"},
-        )
+        for arguments, words in (
+            (["test", "-R"], "-R needs the name of a test"),
+            (["test", 3, "-R"], "-R needs the name of a test"),
+            (["test", "-R", "("], "lab: -R needs a regular expression"),
+        ):
+            self.assert_refused(arguments, words, program=self.folder / "tree/lab", environment={"PYTHONDONTWRITEBYTECODE": "1"})
 
     def test_what_is_not_named_is_left_to_all(self):
         for arguments, targets, choice in (

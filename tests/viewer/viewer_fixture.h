@@ -86,12 +86,12 @@ class ViewerTest : public testing::Test {
         for (int i = 0; i < count; ++i) ASSERT_TRUE(viewer_->frame());
     }
 
-    // Runs frames until a condition holds; fails if that takes far too long.
+    // Runs frames until a condition holds; fails if it never does, however busy the machine is.
     void wait_until(const char* what, const std::function<bool()>& is_so) {
         const auto start = Clock::now();
         while (!is_so()) {
             ASSERT_TRUE(viewer_->frame());
-            ASSERT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 60) << "still not: " << what;
+            ASSERT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 600) << "still not: " << what;
         }
     }
 
