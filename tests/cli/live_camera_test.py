@@ -69,6 +69,7 @@ class LiveCameraTest(LivePages, unittest.TestCase):
 
     def test_the_camera_moves_as_the_programs(self):
         self.start(1)
+        self.end_pictures_after(SAMPLES)
         self.drag((0.5, 0.5), (0.52, 0.5), (0.4, 0.45))
         turned = np.array(self.frame("frame.picture.camera.forward"))
         # Two radians per height of the picture: to the left by 0.2, and up by 0.1.
@@ -93,12 +94,14 @@ class LiveCameraTest(LivePages, unittest.TestCase):
 
     def test_arrow_keys_turn_the_camera(self):
         self.start(1)
+        self.end_pictures_after(SAMPLES)
         self.key("ArrowRight", "frame.picture.camera.forward[0] > 0.1")
         self.key("ArrowUp", "frame.picture.camera.forward[1] > 0.1")
         self.assertEqual(self.frame("frame.picture.camera.position"), [0, 1, 4])
 
     def test_the_background_is_that_of_the_option(self):
         self.start(1)
+        self.end_pictures_after(SAMPLES)
         self.choose("sky", "0.5,1,2")
         self.assert_same_picture("cornell_box", "--background=0.5,1,2")
         self.assertEqual(self.verdict(), "no verdict: the background is another one")
@@ -115,6 +118,7 @@ class LiveCameraTest(LivePages, unittest.TestCase):
 
     def test_first_steps_offer_their_scenes(self):
         self.start(1, page="docs/first_steps.html")
+        self.end_pictures_after(SAMPLES)
         self.scene("torus")
         self.assert_same_picture("torus")
         self.wait("frame.latest?.verdict", "a verdict")

@@ -54,6 +54,9 @@ class LivePages(Site):
         )
         self.wait("frame.editor && frame.verdict.textContent !== 'starting …'" if not before else "true", "start")
 
+    def end_pictures_after(self, samples):
+        self.frame(f"(live.Picture.MOST_SAMPLES = {samples}, frame.film = null, void frame.restart())")
+
     def click(self, name):
         self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
 

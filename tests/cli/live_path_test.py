@@ -37,6 +37,7 @@ class LivePath(LivePages):
 
     def assert_samples_add_up(self, samples):
         """The first samples of a pixel that is lit add up to what the picture has there."""
+        self.end_pictures_after(samples)
         self.wait(f"frame.film?.samples === {samples}", "a picture")
         width, lit, sums = self.frame(
             """(({width, sums}) => { const i = sums.findIndex((x, i) => x > 0 && i > sums.length / 3); const first = i - i % 3;
@@ -71,7 +72,7 @@ class LivePathTest(LivePath, unittest.TestCase):
         self.frame("(frame.controls.scene.value = frame.about.pictures.findIndex(({name}) => name === 'furnace_6'), 0)")
         self.frame(f"(frame.film = null, frame.editor.edit({json.dumps(blocks[5])}))")
         self.wait("frame.film && frame.picture.picture.name === 'furnace_6' && frame.editor.edited.length", "the furnace")
-        self.click_picture(0.25, 0.75)
+        self.click_picture(0.252, 0.752)
         hits = self.lines()
         self.assertEqual([hit[0] for hit in hits], ["x1, seen by the camera", *(f"x{i + 2}, after x{i + 1}" for i in range(6))])
         for i, (_, throughput, position, normal, radiance) in enumerate(hits):

@@ -35,15 +35,18 @@ live.Controls = (() => {
             this.sky = element("input", {
                 type: "text",
                 size: "7",
-                placeholder: "as above",
+                placeholder: "the scene's",
                 title: hint,
                 change: () => {
                     this.sky.setCustomValidity(this.sky.value && !this.background ? hint : "");
                     if (this.sky.reportValidity()) restart();
                 }
             });
-            this.firstCamera = element(
-                "button", {type: "button", hidden: "", title: "F", click: () => frame.picture.resetCamera()}, "First camera");
+            const goBack = () => {
+                frame.picture.root.focus({preventScroll: true});  // since the button hides itself
+                frame.picture.resetCamera();
+            };
+            this.firstCamera = element("button", {type: "button", hidden: "", title: "F", click: goBack}, "First camera");
             this.compared = element("input", {type: "checkbox", change: restart});
             this.pause = button("Pause", () => frame.setPaused(!this.isPaused));
             const bug = select([["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])], () => frame.plant(bugs[bug.value]));

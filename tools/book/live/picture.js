@@ -114,12 +114,12 @@ live.Picture = (() => {
         // At a place relative to the picture's size.
         clicked(x, y) {
             const [own] = this.renderings;
-            if (own)
-                this.path.select(
-                    [x, y].map((part, i) => Math.min(Math.floor(part * own.rendering.size[i]), own.rendering.size[i] - 1)));
+            const pixel = (part, count) => Math.min(Math.floor(part * count), count - 1);
+            if (own) this.path.select([x, y].map((part, i) => pixel(part, own.rendering.size[i])));
         }
 
         resetCamera() {
+            if (!this.camera.hasMoved) return;
             this.camera.reset();
             this.frame.restart();
         }
@@ -172,6 +172,7 @@ live.Picture = (() => {
             this.errors = [];
             this.started = performance.now();
             const scene = await loadData(this.folder, picture.scene);
+            if (turn !== this.turn) return false;
             if (this.picture?.scene !== picture.scene) this.camera = new live.Camera(picture.parameters, scene.camera);
             this.picture = picture;
             const reference = picture.unpacked ??= picture.reference ? await loadReference(this.folder, picture.reference) : null;
