@@ -7,7 +7,6 @@
 
 #include "files/project_folder.h"
 #include "inspection/recording_calls.h"
-#include "shaders/observation/recorded_path.h"
 #include "tracing/limited_loops.h"
 
 namespace lab {
@@ -181,6 +180,8 @@ class PathBuilder {
 
 }  // namespace
 
+RecordedPath path_of(std::span<const RecordedEvent> events) { return PathBuilder(events).build(); }
+
 Estimator recording(const Estimator& estimator) {
     return {.file = project_folder() / "shaders" / "observation" / "record_path.glsl",
             .defines = estimator.defines,
@@ -226,7 +227,7 @@ RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixe
     std::memcpy(&result, bytes.data(), sizeof result);
     std::vector<RecordedEvent> events(std::min(result.event_count, max_events));
     std::memcpy(events.data(), bytes.data() + sizeof result, events.size() * sizeof(RecordedEvent));
-    RecordedPath path = PathBuilder(events).build();
+    RecordedPath path = path_of(events);
     path.is_complete = result.event_count <= max_events;
     return path;
 }

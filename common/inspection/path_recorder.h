@@ -1,9 +1,11 @@
 // Follows a single path: what a chapter's or a student's estimator does for one sample of a pixel.
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "rendering/film.h"
+#include "shaders/observation/recorded_path.h"
 #include "tracing/tracer.h"
 
 namespace lab {
@@ -50,6 +52,9 @@ struct RecordedPath {
     bool is_complete = true;           // false: there was not enough room for all of it
     bool has_throughput = false;       // whether the estimator has a variable of that name
 };
+
+// The path that events make. `is_complete` is left to the recorder.
+RecordedPath path_of(std::span<const RecordedEvent> events);
 
 class PathRecorder {
   public:

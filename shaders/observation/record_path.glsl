@@ -3,22 +3,13 @@
 // trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance`,
 // `survival_probability` and `flight`, common/inspection/recording_calls.cpp has inserted calls of the functions record_…() below.
 #include "observation/recorded_path.h"
-
-layout(scalar, set = 0, binding = BINDING_RECORDED_PATH) buffer RecordedPath {
-    uint recorded_pixel;   // index, row by row
-    uint recorded_sample;  // index
-    uint event_count;      // of all events, including those that no longer fit
-    RecordedEvent events[];
-};
+#include "recorded_events.glsl"
 
 bool is_recording = false;
 
-// Whether events are recorded, and where the next one goes.
+// Whether the next event is recorded, and where it goes.
 bool add_event(uint kind, out uint index) {
-    index = event_count;
-    if (!is_recording) return false;
-    ++event_count;
-    if (index >= events.length()) return false;
+    if (!is_recording || !has_room(event_count++, index)) return false;
     events[index].kind = kind;
     return true;
 }
@@ -61,14 +52,16 @@ void record_throughput(uint kind, float throughput) { record_value(kind, vec3(th
 void record_radiance(uint kind, vec3 radiance, uint variable) { record_value(kind, radiance, variable); }
 // A flight belongs to the latest ray.
 void record_flight(float flight) {
-    if (is_recording && event_count > 0u && event_count <= events.length()) events[event_count - 1u].flight = flight;
+    uint i;
+    if (is_recording && event_count > 0u && has_room(event_count - 1u, i)) events[i].flight = flight;
 }
 void record_survival(float probability) { record_value(EVENT_SURVIVAL, vec3(probability), 0u); }
 
 // At one place for all hits, since drivers compile a function again for every call.
 void add_shading_data() {
-    for (uint i = 0u; i < min(event_count, events.length()); ++i) {
-        if (events[i].kind != EVENT_RAY || events[i].is_hit == 0u) continue;
+    for (uint number = 0u; number < event_count; ++number) {
+        uint i;
+        if (!has_room(number, i) || events[i].kind != EVENT_RAY || events[i].is_hit == 0u) continue;
         Hit hit;
         hit.instance = events[i].instance;
         hit.triangle = events[i].triangle;

@@ -1,5 +1,6 @@
 // Translates shaders for WebGL as a page does: node translate.js LIVE_FOLDER < JSON, with {sources, jobs: [{file, chapter, texts,
-// defines}]}. `texts` replaces or adds sources. A job of which the translation itself fails gets the message as its text.
+// defines, isRecorder}]}. `texts` replaces or adds sources. A job of which the translation itself fails gets the message as its
+// text.
 "use strict";
 const fs = require("fs");
 globalThis.live = {};
@@ -12,11 +13,11 @@ const texture = {
     width: 1,
     height: 1
 };
-for (const {file, chapter, texts, defines} of jobs) {
+for (const {file, chapter, texts, defines, isRecorder} of jobs) {
     let text;
     try {
-        const translated =
-            live.glsl.translate({sources: {...sources, ...texts}, chapter, defines, scene: {buffers: [], images: [texture]}});
+        const job = {sources: {...sources, ...texts}, chapter, defines, scene: {buffers: [], images: [texture]}};
+        const translated = live.glsl.translate({...job, ...(isRecorder && live.glsl.recorderOf(chapter))});
         const lines = translated.text.split("\n").map((line, i) => {
             const place = translated.place(i + 1);
             return place ? `${line}  // ${place.file}:${place.line}` : line;

@@ -81,12 +81,18 @@ def others():
 
 @unittest.skipUnless(NODE and VALIDATOR, "needs nodejs and glslang-tools, which ./lab test installs")
 class ShadersInBrowserTest(unittest.TestCase):
-    def translate(self, jobs):
+    def translate(self, jobs, is_recorder=False):
         """Writes files, as {file: (chapter, name, changed texts, feature)}."""
         task = {
             "sources": live.shaders(),
             "jobs": [
-                {"file": str(file), "chapter": CHAPTERS[chapter], "texts": changed, "defines": FEATURES[feature]}
+                {
+                    "file": str(file),
+                    "chapter": CHAPTERS[chapter],
+                    "texts": changed,
+                    "defines": FEATURES[feature],
+                    "isRecorder": is_recorder,
+                }
                 for file, (chapter, _, changed, feature) in jobs.items()
             ],
         }
@@ -94,7 +100,7 @@ class ShadersInBrowserTest(unittest.TestCase):
             [NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True
         )
 
-    def errors(self, texts, features=tuple(FEATURES)):
+    def errors(self, texts, features=tuple(FEATURES), is_recorder=False):
         """The errors of (chapter, name, changed texts), by name and features."""
         with tempfile.TemporaryDirectory() as folder:
             jobs = {
@@ -102,7 +108,7 @@ class ShadersInBrowserTest(unittest.TestCase):
                 for i, (chapter, name, changed) in enumerate(texts)
                 for feature in features
             }
-            self.translate(jobs)
+            self.translate(jobs, is_recorder)
             output = subprocess.run([VALIDATOR, *jobs], capture_output=True, text=True).stdout
         self.assertGreater(len(jobs), 0)
         found, file = {}, None
@@ -140,6 +146,9 @@ class ShadersInBrowserTest(unittest.TestCase):
 
     def test_every_chapter_compiles(self):
         self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})
+
+    def test_the_recorder_of_every_chapter_compiles(self):
+        self.assertEqual(self.errors(((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), is_recorder=True), {})
 
     def test_solutions_and_exercises_compile(self):
         texts = [

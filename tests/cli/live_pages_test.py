@@ -45,13 +45,17 @@ class LivePages(Site):
             )
             time.sleep(0.1)
 
-    def start(self, chapter, fragment="", before=""):
+    def start(self, chapter, fragment="", before="", page=None):
         self.browser.visit("about:blank")
-        self.browser.visit((self.site / f"chapters/{CHAPTERS[chapter]}/index.html").as_uri() + fragment)
+        page = self.site / (page or f"chapters/{CHAPTERS[chapter]}/index.html")
+        self.browser.visit(page.as_uri() + fragment)
         self.browser.evaluate(
             f"{SMALL}; {before}; document.querySelector('.live').scrollIntoView(); document.querySelector('.live-start').click()"
         )
         self.wait("frame.editor && frame.verdict.textContent !== 'starting …'" if not before else "true", "start")
+
+    def end_pictures_after(self, samples):
+        self.frame(f"(live.Picture.MOST_SAMPLES = {samples}, frame.film = null, void frame.restart())")
 
     def click(self, name):
         self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
@@ -189,7 +193,9 @@ class LivePagesTest(LivePages, unittest.TestCase):
             )[CHAPTERS[chapter]]
             scripts = sum(file.stat().st_size for file in folder.glob("*.*"))
             for picture in about["pictures"]:
-                size = scripts + sum((folder / "data" / f"{picture[key]}.js").stat().st_size for key in ("scene", "reference"))
+                size = scripts + sum(
+                    (folder / "data" / f"{picture[key]}.js").stat().st_size for key in ("scene", "reference") if key in picture
+                )
                 self.assertLess(
                     size,
                     600_000 if picture["name"].startswith("cornell_box") else 2_500_000,

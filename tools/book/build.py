@@ -91,7 +91,8 @@ def collect(folder, sections, is_teacher):
         page = Page(path, is_included)
         write(folder, path, page.text + whole_estimator(path))
         waiting += page.linked
-        frames |= page.frames
+        for chapter, scenes in page.frames.items():
+            frames[chapter] = list(dict.fromkeys(frames.get(chapter, []) + scenes))
         named |= {f"{path.with_suffix('.html')}#{name}": (name, text) for name, text in page.functions.items()}
         for picture in page.pictures:
             if not (ROOT / picture).is_file():

@@ -1,5 +1,6 @@
 // Writes what a browser needs to render a scene as a chapter does: the arrays that a GPU gets, our hierarchy, the parameters and
-// the reference, if there is one. FILE.json says where each array of FILE.bin begins; all numbers have 32 bits.
+// the reference, if there is one, and what moving the camera takes. FILE.json says where each array of FILE.bin begins; all
+// numbers have 32 bits.
 //     dump_arrays FILE CHAPTER SCENE OPTIONS
 #include <fstream>
 #include <iostream>
@@ -69,10 +70,13 @@ void dump(const std::string& file, const Chapter& chapter, const Options& option
     const RenderParameters parameters = picture(chapter, scene, options);
     const SceneArrays arrays(scene, strategy_of(chapter, options), chapter.handles);
     const Bvh bvh = build_bvh(world_triangles(scene));
+    const Bounds bounds = world_bounds(scene);
+    const float diagonal = glm::distance(bounds.low, bounds.high);
 
     Dump dump(file);
     dump.content = {{"defines", arrays.defines()},
                     {"options", make_estimator(chapter, options).defines},
+                    {"camera", {{"up", {scene.camera.up.x, scene.camera.up.y, scene.camera.up.z}}, {"scene_size", diagonal}}},
                     {"buffers", json::array()},
                     {"images", json::array()}};
     dump.content["defines"].push_back("BVH_STACK_SIZE " + std::to_string(bvh.stack_size()));

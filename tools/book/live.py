@@ -1,7 +1,8 @@
 """The lab in the browser: what the pages of a book need to render its chapters.
 
 A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
-other pages the marker names the chapter, too: <!-- live: SCENE by uniform_sampling -->. <!-- live: PICTURE by
+other pages the marker names the chapter, too, and there may be several scenes: <!-- live: SCENE, SCENE by uniform_sampling -->. The
+frames of a chapter offer the scenes of all pages. <!-- live: PICTURE by
 CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report --> becomes a button that
 tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
 """
@@ -48,29 +49,47 @@ SCRIPTS = [
     "renderer.js",
     "editor.js",
     "plot.js",
-    "controls.js",
+    "camera.js",
+    "path.js",
+    "path_panel.js",
     "picture.js",
+    "controls.js",
     "check.js",
     "report.js",
     "page.js",
 ]
 RULES = ["SURE", "TOLERANCE", "CLOSE", "INTERVAL", "DARK", "FEW_PARTS", "CONSTANTS"]  # of facts.py, which facts.js follows
-MARKER = re.compile(r"^<!-- live: (\w+)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
+MARKER = re.compile(r"^<!-- live: (\w+(?:, \w+)*)(?: by (\w+)(?: bug (\d+))?)? -->$", re.MULTILINE)
 REPORT = "report"
 LARGEST = 2_500_000  # bytes of a scene on a page
+LENGTH = 6  # of paths where a scene has no reference
+SIZE_OF_PICTURE = ["--width", "256", "--height", "256"]  # there, too
 HALF_LARGEST = 30_000  # what the largest number of an image is scaled to: halves end at 65504 and lose digits below 6e-5
 SHADERS = {".glsl", ".h", ".frag"}
 REPLACEABLE = "shaders/replaceable.json"  # the files that a chapter may replace
 CONTINUED = "chapters/continued.json"  # {chapter: that which it continues}: written for pages
 IN_DRAWS = {
-    "sample_loop.glsl": "single_sample.glsl",
-    "stuck_loop.glsl": "stuck_loop_of_a_draw.glsl",
+    "engine/sample_loop.glsl": "engine/single_sample.glsl",
+    "engine/stuck_loop.glsl": "engine/stuck_loop_of_a_draw.glsl",
+    "observation/recorded_events.glsl": "observation/recorded_event_of_a_draw.glsl",
 }  # what a page has in place of the programs'
+OBSERVERS = {
+    "view.glsl",
+    "record_path.frag",
+    "record_path.glsl",
+    "recorded_path.h",
+    "recorded_event_of_a_draw.glsl",
+    "observed_estimator.glsl",
+}
 
 
 def frames_of(text, path):
-    """{chapter: scene} of a page's markers."""
-    return {chapter_of(marker, path): marker[1] for marker in MARKER.finditer(text) if marker[1] != REPORT and not marker[3]}
+    """{chapter: scenes} of a page's markers."""
+    return {
+        chapter_of(marker, path): marker[1].split(", ")
+        for marker in MARKER.finditer(text)
+        if marker[1] != REPORT and not marker[3]
+    }
 
 
 def chapter_of(marker, path):
@@ -98,7 +117,7 @@ def with_frames(text, path):
 def shaders():
     """The texts of all shaders that a browser may include: of the engine, the world and the chapters. Pages trace rays as
     `compute` does. Of those that observe paths, they have the view of
-    surfaces. Comments are left out where no page shows the file."""
+    surfaces and the recorder. Comments are left out where no page shows the file."""
     files = [ROOT / REPLACEABLE] + [
         file
         for room in ("shaders", "chapters")
@@ -108,10 +127,10 @@ def shaders():
     texts = {
         file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8")
         for file in files
-        if file.name == "view.glsl" or not {"solutions", "variants", "observation"} & set(file.parts)
+        if file.name in OBSERVERS or not {"solutions", "variants", "observation"} & set(file.parts)
     }
     for name, replacement in IN_DRAWS.items():
-        texts[f"shaders/engine/{name}"] = texts.pop(f"shaders/engine/{replacement}")
+        texts[f"shaders/{name}"] = texts.pop(f"shaders/{replacement}")
     texts[CONTINUED] = literal({chapter: description(chapter).get("continues") for chapter in CHAPTERS.values()})
     return {name: text if name.startswith("chapters/") else re.sub("[ \t]*//.*", "", text) for name, text in texts.items()}
 
@@ -121,14 +140,18 @@ def without_comments(text):
     return re.sub(r"^ *//.*|^ +", "", text, flags=re.MULTILINE)
 
 
-def pictures_of(chapter, scene):
-    """The names of the references that a chapter's frame offers: those of the page's scene, the longest paths first, then its check's."""
-    names = sorted(
-        (file.stem for file in (ROOT / "assets/references").glob(f"{scene}_*.exr") if scene_of(file.stem) == scene),
-        key=lambda name: -length_of(name),
-    )
-    if not names:
-        raise UserError(f"chapters/{chapter}/README.md: live: {scene}: this scene has no reference")
+def pictures_of(chapter, scenes):
+    """The names of the pictures that a chapter's frame offers: references of the pages' scenes, the longest paths first, then its
+    check's. Another scene than the first need not have a reference."""
+
+    def pictures(scene):
+        files = (ROOT / "assets/references").glob(f"{scene}_*.exr")
+        return sorted((file.stem for file in files if scene_of(file.stem) == scene), key=lambda name: -length_of(name))
+
+    first, *others = scenes
+    if not pictures(first):
+        raise UserError(f"chapters/{chapter}/README.md: live: {first}: this scene has no reference")
+    names = pictures(first) + [name for scene in others for name in pictures(scene) or [f"{scene}_{LENGTH}"]]
     return list(dict.fromkeys(names + description(chapter)["check"]["references"]))
 
 
@@ -168,20 +191,27 @@ def dump(file, chapter, *scene_and_options):
 def dumped(chapter, name, folder):
     """A picture's entry, and the scripts that it loads: {file name: text}."""
     arrays, parameters, _, reference = dump(
-        folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name)
+        folder / f"{chapter}_{name}", chapter, scene_of(name), "--max-path-length", length_of(name), *SIZE_OF_PICTURE
     )
-    (told, mean), (_, variance) = reference
+    scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
+    entry, scripts = {"name": name, "scene": scene, "parameters": parameters}, {scene: script(scene, arrays)}
+    if reference:
+        entry["reference"] = f"reference_{name}"
+        scripts[entry["reference"]] = script(entry["reference"], packed_reference(*reference))
+    return entry, scripts
+
+
+def packed_reference(means, variances):
+    """A reference as a page loads it, from its two pictures."""
+    (told, mean), (_, variance) = means, variances
     (means, mean_scale), (deviations, deviation_scale) = halves(mean), halves([number**0.5 for number in variance])
-    reference = {
+    return {
         "width": told["width"],
         "height": told["height"],
         "samples": float(told["samples"]),
         "scales": [mean_scale, deviation_scale],
         "packed": packed(means + deviations),
     }
-    scene = f"{scene_of(name)}_{hashlib.sha256(json.dumps(arrays).encode()).hexdigest()[:8]}"
-    entry = {"name": name, "scene": scene, "reference": f"reference_{name}", "parameters": parameters}
-    return entry, {key: script(key, value) for key, value in ((scene, arrays), (entry["reference"], reference))}
 
 
 def fits(scripts):
@@ -252,10 +282,8 @@ def experiments_of_page(chapter, folder):
 def furnace(folder):
     """A closed room in which every path brings the same light, as chapter 2 weighs by the albedo, 0.5, alone: what is dark there has been lost between triangles."""
     chapter = CHAPTERS[2]
-    arrays, parameters, _, _ = dump(
-        folder / "furnace", chapter, "furnace", "--max-path-length", "6", "--width", "256", "--height", "256"
-    )
-    return {"chapter": chapter, "scene": arrays, "radiance": 2 - 0.5**6, "parameters": parameters}
+    arrays, parameters, _, _ = dump(folder / "furnace", chapter, "furnace", "--max-path-length", LENGTH, *SIZE_OF_PICTURE)
+    return {"chapter": chapter, "scene": arrays, "radiance": 2 - 0.5**LENGTH, "parameters": parameters}
 
 
 def exercise_of(chapter, texts):
@@ -277,10 +305,10 @@ def bugs_of(chapter):
 
 
 def write(folder, frames):
-    """Writes the folder `live` of a site. `frames`: {chapter: scene} of its pages."""
+    """Writes the folder `live` of a site. `frames`: {chapter: scenes} of its pages."""
     texts, chapters, scripts = shaders(), {}, {}
     before = dict(pairwise(sorted(frames, reverse=True)))  # the pages' chapters may be compared with
-    names = {chapter: pictures_of(chapter, scene) for chapter, scene in frames.items()}
+    names = {chapter: pictures_of(chapter, scenes) for chapter, scenes in frames.items()}
     with tempfile.TemporaryDirectory() as temporary, ThreadPoolExecutor() as pool:
         wanted = {
             (each, name) for chapter in frames for name in names[chapter] for each in (chapter, before.get(chapter)) if each

@@ -35,7 +35,7 @@ class Page:
         self.path, self.is_included = Path(path), is_included
         self.linked = []  # pages and sources
         text = (ROOT / path).read_text(encoding="utf-8")
-        self.frames = live.frames_of(text, self.path)  # {chapter: scene}
+        self.frames = live.frames_of(text, self.path)  # {chapter: scenes}
         text = live.with_frames(text, self.path)
         text = re.sub(r"<!-- .*? -->\n?|^\[!\[.*\]\(\.\./\.\./actions/.*\n", "", text, flags=re.MULTILINE)  # no badges
         text = text.replace("<details>", '<details markdown="1">')  # or MkDocs would leave its text unformatted

@@ -11,7 +11,7 @@ live.check = (() => {
     async function verdicts(frame) {
         const {checked, pictures, samples} = frame.about, rows = [], enough = Math.max(samples, FIRST_VERDICT);
         for (const name of checked) {
-            const picture = pictures.find(p => p.name === name), started = performance.now();
+            const picture = pictures.find(p => p.name === name);
             if (!picture) {
                 rows.push([name, "is too large for a page: ./lab check renders it"]);
                 continue;
@@ -22,7 +22,7 @@ live.check = (() => {
             const done = await frame.picture.render(picture, target, (film, reference, verdict) => {
                 if (!film.rays) throw new Error("the shader traces no ray: there is nothing to check");
                 last = verdict;
-                frame.show(film, reference, verdict, started);
+                frame.show(film, reference, verdict);
             });
             if (!done) return null;
             rows.push([name, last.text]);

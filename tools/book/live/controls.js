@@ -24,13 +24,29 @@ live.Controls = (() => {
             const {about: {pictures, strategies, exercise, bugs}, editor} = frame, restart = () => frame.restart();
             this.isPaused = false;
             this.scene = select(pictures.map(({name}, i) => [i, lengthText(name)]), () => {
-                this.length.value = "";
+                this.length.value = this.sky.value = "";
                 restart();
             });
             this.view = select(Object.entries(VIEWS), () => frame.viewChanged());
             this.strategy = select(strategies.map(name => [name, LIGHTS[name]]), restart);
             this.length =
                 element("input", {type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart});
+            const hint = "radiance of the sky: three numbers, such as 1,1,1";
+            this.sky = element("input", {
+                type: "text",
+                size: "7",
+                placeholder: "the scene's",
+                title: hint,
+                change: () => {
+                    this.sky.setCustomValidity(this.sky.value && !this.background ? hint : "");
+                    if (this.sky.reportValidity()) restart();
+                }
+            });
+            const goBack = () => {
+                frame.picture.root.focus({preventScroll: true});  // since the button hides itself
+                frame.picture.resetCamera();
+            };
+            this.firstCamera = element("button", {type: "button", hidden: "", title: "F", click: goBack}, "First camera");
             this.compared = element("input", {type: "checkbox", change: restart});
             this.pause = button("Pause", () => frame.setPaused(!this.isPaused));
             const bug = select([["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])], () => frame.plant(bugs[bug.value]));
@@ -40,8 +56,9 @@ live.Controls = (() => {
                 "div", {class: "live-controls", role: "group", "aria-label": "controls of the picture"},
                 label("Scene ", this.scene), label("Show ", this.view),
                 ...(strategies.length > 1 ? [label("Light by ", this.strategy)] : []), label("Bounces ", this.length),
+                label("Background ", this.sky),
                 ...(pictures.some(({before}) => before) ? [label(this.compared, " compare with the chapter before")] : []),
-                this.pause, button("Restart", restart), button("Check", () => frame.check()),
+                this.firstCamera, this.pause, button("Restart", restart), button("Check", () => frame.check()),
                 ...(exercise ? [button("Start exercise 1", startExercise)] : []),
                 ...(bugs.length ? [label("Bug to find ", bug)] : []), button("Original text", () => editor.replace({})),
                 editor.back, button("Download", () => editor.download()), button("Open", () => editor.openFile()),
@@ -55,6 +72,13 @@ live.Controls = (() => {
         // The defines of the page's own options.
         get options() { return this.strategy.value ? [`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`] : []; }
 
+        // The radiance of the sky, if it is not that of the scene, as --background takes it.
+        get background() {
+            const parts = this.sky.value.split(",").map(part => part.trim()), numbers = parts.map(Number);
+            const isColour = parts.length === 3 && parts.every(part => part) && numbers.every(n => n >= 0 && n < 1e30);
+            return isColour ? numbers : null;
+        }
+
         setPaused(isPaused) {
             this.isPaused = isPaused;
             this.pause.textContent = isPaused ? "Go on" : "Pause";
@@ -64,7 +88,7 @@ live.Controls = (() => {
         reset() {
             this.compared.checked = false;
             this.view.value = "picture";
-            this.length.value = "";
+            this.length.value = this.sky.value = "";
             if (this.strategy.value) this.strategy.selectedIndex = 0;
         }
     };

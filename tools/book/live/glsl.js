@@ -99,13 +99,23 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
         return {text: lines.map(words => `${words.join(" ")}\n`).join(""), places};
     }
 
+    // What records a path of a chapter in place of its program, for translate().
+    const recorderOf = chapter => ({
+        main: "shaders/observation/record_path.frag",
+        named: {
+            "path_trace.glsl": "shaders/observation/record_path.glsl",
+            "observed.glsl": `chapters/${chapter}/path_trace.glsl`,
+            "sample_loop.glsl": "shaders/engine/sample_loop.glsl"
+        }
+    });
+
     // Translates a chapter's program. `scene`: images as dump_arrays writes them; `named`: as finder() takes them.
     // Returns the text, functions from its line numbers and from numbers of loops to places, those of functions, and whether the
     // chapter has a sample loop of its own, which renders several samples in a draw.
-    function translate({sources, chapter, named, defines, scene}) {
+    function translate({sources, chapter, named, defines, scene, main = "shaders/engine/render.frag"}) {
         const layout = new Layout(sources["shaders/interface.h"]);
         const preprocessor = new Preprocessor(sources, finder(sources, chapter, named), [...MACROS, ...defines]);
-        const tokens = preprocessor.run("shaders/engine/render.frag");
+        const tokens = preprocessor.run(main);
         checkBraces(tokens);
         const textures = scene.images.filter(image => image.binding === layout.constants.BINDING_TEXTURES);
         const translation = new Translation(tokens, layout, readerOf(textures));
@@ -154,5 +164,5 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
         };
     }
 
-    return {translate, finder, readableError, ShaderError};
+    return {translate, recorderOf, finder, readableError, ShaderError};
 })();

@@ -27,6 +27,8 @@ live.Layout = (() => {
             return words * (count === undefined ? 1 : this.constants[count]);
         }
 
+        typeOf(type, member) { return this.structs[type].find(([, name]) => name === member)[0]; }
+
         // The first word of a struct's member.
         offsetOf(type, member) {
             const members = this.structs[type], index = members.findIndex(([, name]) => name === member);

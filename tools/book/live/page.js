@@ -41,8 +41,8 @@ live.page = (() => {
             this.controls = new live.Controls(this);
             this.picture = new live.Picture(this);
             await this.editor.readLink();
-            const {root, caption, numbers} = this.picture;
-            const parts = [this.edits, root, caption, this.verdict, this.plot, numbers, this.note];
+            const {root, hint, caption, path, numbers} = this.picture;
+            const parts = [this.edits, root, hint, caption, path.root, this.verdict, this.plot, numbers, this.note];
             const columns = [element("div", {class: "live-picture"}, ...parts), this.editor.root];
             this.root.replaceChildren(this.controls.root, element("div", {class: "live-columns"}, ...columns), this.results);
             if (this.bug) {
@@ -133,23 +133,41 @@ live.page = (() => {
 
         async restart() {
             if (!this.activate()) return;
-            const started = performance.now(), {picture} = this, show = (...all) => this.show(...all, started);
-            this.film = null;
-            this.drawOverlay();
+            const {picture} = this;
+            this.forgetFilm();
             this.results.replaceChildren();
             try {
                 const chosen = this.about.pictures[this.controls.scene.value];
-                await picture.render(chosen, () => live.Picture.MOST_SAMPLES, show);
+                await picture.render(chosen, () => live.Picture.MOST_SAMPLES, (...latest) => this.show(...latest));
             } catch (error) { this.report(error); }
+        }
+
+        forgetFilm() {
+            this.film = null;
+            this.drawOverlay();
+            this.controls.firstCamera.hidden = !this.picture.camera?.hasMoved;
+        }
+
+        // What renders begins anew by itself, unless it has ended. A check is over.
+        cameraMoved() {
+            const {picture: {renderings}} = this;
+            this.forgetFilm();
+            if (this.checking || renderings.some(({rendering}) => rendering.samples >= live.Picture.MOST_SAMPLES))
+                this.restart();
+            else if (renderings.length && !renderings[0].rendering.isStopped)
+                this.sayVerdict();
         }
 
         async check() {
             if (!this.activate()) return;
             this.setPaused(false);
             this.controls.reset();
+            this.picture.camera?.reset();
+            const checking = this.checking = live.check(this);
             try {
-                await live.check(this);
+                await checking;
             } catch (error) { this.report(error); }
+            if (this.checking === checking) this.checking = undefined;
         }
 
         activate() {
@@ -167,29 +185,36 @@ live.page = (() => {
                 this.fail(error.message);
         }
 
-        show(film, reference, verdict, started) {
-            const {picture, controls: {isView, length}} = this, {means, error} = live.statistics.relativeError(film, reference);
+        // `film`, `reference` and `verdict` are the latest; a scene without a reference has null in place of them.
+        show(film, reference, verdict) {
+            const {picture} = this, hasReference = !this.controls.isView && !picture.withoutVerdict;
+            const {means, error} = hasReference ? live.statistics.relativeError(film, reference) : {};
             this.editor.showError("");
-            Object.assign(this, {film, reference, means, latest: verdict});
+            Object.assign(this, {film, means, reference: hasReference ? reference : null, latest: verdict});
             if (film.samples >= ENOUGH) picture.losses = 0;
-            const seconds = (performance.now() - started) / 1000, hasReference = !isView && length.value === "";
-            const isBiased = verdict.verdict?.isBiased;
-            this.verdict.className = "live-verdict";
-            if (hasReference && verdict.verdict) this.verdict.classList.add(isBiased ? "live-biased" : "live-agrees");
-            if (isView)
-                this.verdict.textContent = "this view shows surfaces, not light";
-            else if (!hasReference)
-                this.verdict.textContent = "no verdict: there is no reference for this path length";
-            else
-                this.verdict.textContent = film.rays ? verdict.text : "no verdict: the shader traces no ray";
+            this.sayVerdict();
             if (hasReference) picture.errors.push([film.samples, error]);
-            const speed = (film.rays / seconds / 1e6).toFixed(2);
+            const seconds = (performance.now() - picture.started) / 1000, speed = (film.rays / seconds / 1e6).toFixed(2);
             const numbers = [`${film.samples} samples a pixel, ${seconds.toFixed(1)} s, ${speed} million rays per second`];
             if (film.samples > 1 && hasReference) numbers.push(`, error ${percent(error)}`);
             if (film.invalid) numbers.push(`; ${film.invalid} samples are infinite or no numbers: their pixels are magenta`);
             picture.numbers.textContent = numbers.join("");
             this.plot.innerHTML = plotOf(picture.errors);
             this.drawOverlay();
+        }
+
+        // The latest verdict, or why there is none.
+        sayVerdict() {
+            const {film, latest, picture: {withoutVerdict}, controls: {isView}} = this, verdict = latest?.verdict;
+            this.verdict.className = "live-verdict";
+            if (isView)
+                this.verdict.textContent = "this view shows surfaces, not light";
+            else if (withoutVerdict || !film?.rays)
+                this.verdict.textContent = `no verdict: ${withoutVerdict || "the shader traces no ray"}`;
+            else {
+                this.verdict.textContent = latest.text;
+                if (verdict) this.verdict.classList.add(verdict.isBiased ? "live-biased" : "live-agrees");
+            }
         }
     }
 

@@ -4,6 +4,12 @@
 live.Picture = (() => {
     const {element} = live, {loadData, loadReference, unpackWords} = live.loading, {percent} = live.plot;
     const {Renderer, Rendering} = live.rendering;
+    // What a reference knows of the parameters, and what the programs say where it differs: common/rendering/scene_reference.cpp.
+    const DIFFERENCES = {
+        max_path_length: "there is no reference for this path length",
+        camera: "the camera has changed",
+        background: "the background is another one"
+    };
     const TURNS = 65536;  // that the loops of a sample may take if paths are short, as in shaders/engine/limited_loops.glsl
 
     return class Picture {
@@ -26,7 +32,20 @@ live.Picture = (() => {
                 "aria-label": "the line between this chapter, left, and the one before",
                 input: () => this.paint()
             });
-            this.root = element("div", {class: "live-canvases"}, this.overlay, this.line);
+            const keys =
+                "W A S D Q E and the arrow keys move the camera, F takes it back, Enter follows a path, Escape leaves it";
+            const named = {role: "application", "aria-label": `the picture: ${keys}`, tabindex: "0"};
+            const hint = "Drag to turn, W A S D Q E to fly, F to go back. Click a pixel for its path.";
+            this.root = element("div", {class: "live-canvases", ...named}, this.overlay, this.line);
+            live.Camera.listen(this.root, this);
+            this.path = new live.PathPanel(this);
+            this.root.append(this.path.drawing);
+            this.root.addEventListener("keydown", ({key, target}) => {
+                if (target !== this.root) return;
+                if (key === "Enter") this.clicked(0.5, 0.5);
+                if (key === "Escape") this.path.select(null);
+            });
+            this.hint = element("p", {class: "live-numbers"}, hint);
             this.caption = element("p", {class: "live-numbers"});
             this.numbers = element("p", {class: "live-numbers"});
         }
@@ -79,6 +98,44 @@ live.Picture = (() => {
             this.renderings = [];
         }
 
+        // The camera has moved: what renders begins anew, without compiling.
+        moved() {
+            this.started = performance.now();
+            this.errors = [];
+            this.caption.textContent = "";
+            for (const {rendering, parameters} of this.renderings) {
+                parameters.set(this.camera.words);
+                rendering.change(parameters);
+            }
+            this.frame.cameraMoved();
+            this.path.update();
+        }
+
+        // At a place relative to the picture's size.
+        clicked(x, y) {
+            const [own] = this.renderings;
+            const pixel = (part, count) => Math.min(Math.floor(part * count), count - 1);
+            if (own) this.path.select([x, y].map((part, i) => pixel(part, own.rendering.size[i])));
+        }
+
+        resetCamera() {
+            if (!this.camera.hasMoved) return;
+            this.camera.reset();
+            this.frame.restart();
+        }
+
+        // Why the picture of this chapter has no verdict; empty if it has.
+        get withoutVerdict() {
+            const {picture, renderings: [{parameters}], renderer: {layout}} = this;
+            if (!picture.reference) return "this scene has no reference";
+            const differs = member => {
+                const place = layout.offsetOf("RenderParameters", member), type = layout.typeOf("RenderParameters", member);
+                return parameters.subarray(place, place + layout.wordsOf(type))
+                    .some((x, i) => x !== picture.parameters[place + i]);
+            };
+            return DIFFERENCES[Object.keys(DIFFERENCES).find(differs)] ?? "";
+        }
+
         // Compiles texts for a picture's scene. Throws ShaderErrors.
         async prepare({scene, parameters: words, chapter = this.chapter, options = this.frame.controls.options}, sources) {
             if (typeof scene === "string") scene = await loadData(this.folder, scene);
@@ -86,32 +143,39 @@ live.Picture = (() => {
             const parameters = Uint32Array.from(words);
             const placeOf = member => this.renderer.layout.offsetOf("RenderParameters", member);
             const size = [...parameters.subarray(placeOf("image_size"), placeOf("image_size") + 2)];
-            const {isView, view, length} = this.frame.controls;
+            const {isView, view, length, background} = this.frame.controls;
             if (length.value !== "")
                 parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(length.value), 0), 100);
-            const defines = [...scene.defines, ...options], named = {};
+            const defines = [...scene.defines, ...options], named = {}, views = isView ? [`VIEW_${view.value}`] : [];
+            if (background) parameters.set(new Uint32Array(Float32Array.from(background).buffer), placeOf("background"));
+            if (background?.some(radiance => radiance > 0)) defines.push("FEATURE_SKY");
             if (isView) {
-                defines.push(`VIEW_${view.value}`);
                 named["path_trace.glsl"] = "shaders/observation/view.glsl";
                 named["sample_loop.glsl"] = "shaders/engine/sample_loop.glsl";
             }
-            const translated = live.glsl.translate({sources, chapter, named, defines, scene});
+            const translated = live.glsl.translate({sources, chapter, named, defines: [...defines, ...views], scene});
             const started = performance.now(), linked = await this.renderer.compile(translated);
             const compileTime = performance.now() - started;
+            if (this.camera?.hasMoved) parameters.set(this.camera.words);
             const rendering = new Rendering(this.renderer, {translated, linked, scene, parameters, size});
-            return {rendering, translated, chapter, compileTime};
+            return {rendering, translated, chapter, sources, scene, defines, parameters, compileTime};
         }
 
         // Renders a picture; look(film, state, verdict) is called at powers of two. Returns whether it came to its end.
         async render(picture, target, look) {
             this.stop();
-            const {turn, frame, frame: {controls, editor}} = this, started = performance.now(), {before} = picture;
+            const {turn, frame, frame: {controls, editor}} = this, {before} = picture;
             if (editor.tooLong)
                 throw new live.glsl.ShaderError(
                     `${editor.tooLong}:1: the text is longer than any shader needs: is it the right file?`);
             this.numbers.textContent = "compiling …";
             this.errors = [];
-            const reference = picture.unpacked ??= await loadReference(this.folder, picture.reference);
+            this.started = performance.now();
+            const scene = await loadData(this.folder, picture.scene);
+            if (turn !== this.turn) return false;
+            if (this.picture?.scene !== picture.scene) this.camera = new live.Camera(picture.parameters, scene.camera);
+            this.picture = picture;
+            const reference = picture.unpacked ??= picture.reference ? await loadReference(this.folder, picture.reference) : null;
             const state = await this.prepare(picture, editor.sources), {rendering} = state, states = [state];
             if (turn === this.turn && controls.compared.checked && before) states.push(await this.prepare(before, live.sources));
             if (turn !== this.turn) {
@@ -119,17 +183,19 @@ live.Picture = (() => {
                 return false;
             }
             this.renderings = states;
+            this.path.update();
             this.numbers.textContent = controls.isPaused ? "paused: press Go on" : "";
             this.line.hidden = states.length < 2;
             this.caption.textContent = "";
-            const verdict = new live.statistics.LiveVerdict(reference, ...rendering.size), other = states[1]?.rendering;
-            const isPaused = (a, b) => controls.isPaused || !frame.isVisible || document.hidden ||
-                b && a.busy > b.busy && b.samples < Picture.MOST_SAMPLES;  // whoever has had more time waits
+            const verdict = reference && new live.statistics.LiveVerdict(reference, ...rendering.size);
+            const other = states[1]?.rendering;
+            const isPaused = (a, b) => controls.isPaused && !(this.camera.hasMoved && a.isFirstPass) || !frame.isVisible ||
+                document.hidden || b && a.busy > b.busy && b.samples < Picture.MOST_SAMPLES;  // whoever has had more time waits
             other?.render({
                 target: () => Picture.MOST_SAMPLES,
                 isPaused: () => isPaused(other, rendering),
                 shown: () => this.paint(),
-                look: film => this.compare(film, reference)
+                look: film => this.withoutVerdict || this.compare(film, reference)
             });
             return rendering.render({
                 target,
@@ -137,11 +203,11 @@ live.Picture = (() => {
                 shown: () => this.paint(),
                 preview: film => {
                     this.checkLoops(film, state);
-                    this.times ??= {compile: state.compileTime, first: performance.now() - started};
+                    this.times ??= {compile: state.compileTime, first: performance.now() - this.started};
                 },
                 look: film => {
                     this.checkLoops(film, state);
-                    if (film.rays && film.samples === verdict.nextSamples) verdict.add(film);
+                    if (!this.withoutVerdict && film.rays && film.samples === verdict.nextSamples) verdict.add(film);
                     look(film, reference, verdict);
                 }
             });

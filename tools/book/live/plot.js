@@ -13,9 +13,11 @@ live.plot = (() => {
     // What is not the picture itself: differences, the verdict's map, noise. One pixel of the overlay is one of the reference or
     // a tile.
     function drawOverlay(overlay, view, {film, reference, means, latest}) {
-        overlay.hidden = !film || !["difference", "bias", "noise"].includes(view) || view === "bias" && !latest.verdict;
+        overlay.hidden = !film || !["difference", "bias", "noise"].includes(view) || view !== "noise" && !reference ||
+            view === "bias" && !latest.verdict;
         if (overlay.hidden) return;
-        const mean = reference.mean.reduce((sum, r) => sum + r, 0) / reference.mean.length;
+        const meanOf = values => values.reduce((sum, value) => sum + value, 0) / values.length;
+        const mean = reference ? meanOf(reference.mean) : meanOf(film.sums) / film.samples;
         const paint = (width, height, value) => {
             [overlay.width, overlay.height] = [width, height];
             const image = new ImageData(width, height);

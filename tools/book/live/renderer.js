@@ -150,8 +150,7 @@ void main() {
             }
             // Two films take turns, since a shader cannot write what it reads.
             this.films = [this.makeFilm(), this.makeFilm()];
-            gl.useProgram(linked.program);
-            this.setStruct("RenderParameters", "parameters", parameters);
+            this.setParameters(parameters);
             for (const {binding, first, count} of scene.buffers)
                 gl.uniform2ui(linked.place(`web_places[${binding}]`), first, count);
         }
@@ -186,6 +185,15 @@ void main() {
             gl.disable(gl.SCISSOR_TEST);
             for (const i of written) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
         }
+
+        setParameters(parameters) {
+            this.gl.useProgram(this.linked.program);
+            this.setStruct("RenderParameters", "parameters", parameters);
+        }
+
+        // Lets render() begin anew with other parameters. What it draws at first is shown before, so that a moving camera sees
+        // something.
+        change(parameters) { this.changed = parameters; }
 
         // Ends render() at its next draw.
         stop() {
@@ -228,17 +236,22 @@ void main() {
             for (const i of FILM) this.renderer.bind(linked, `web_film_before[${i}]`, i, this.films[film].textures[i]);
         }
 
-        // A film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a
-        // stuck loop. Throws if there is no sample at all: a black picture is no evidence.
-        read({frames} = this.films[0]) {
-            const {gl, size: [width, height]} = this, count = width * height;
-            const [a, b, c] = FILM.map(i => {
-                const words = new Uint32Array(4 * count);
+        // The words of a film, three lists of four a pixel.
+        readWords({frames}) {
+            const {gl, size: [width, height]} = this;
+            return FILM.map(i => {
+                const words = new Uint32Array(4 * width * height);
                 gl.bindFramebuffer(gl.FRAMEBUFFER, frames.find(({written}) => written.includes(i)).frame);
                 gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
                 gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
                 return words;
             });
+        }
+
+        // A film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a
+        // stuck loop. Throws if there is no sample at all: a black picture is no evidence.
+        read(source = this.films[0]) {
+            const {gl, size: [width, height]} = this, count = width * height, [a, b, c] = this.readWords(source);
             const film = {
                 width,
                 height,
@@ -273,12 +286,18 @@ void main() {
         // whether it was not stopped. `pace`: how much fits into a draw, from the last picture if it was like this one.
         async render({target, isPaused = () => false, preview = () => {}, look, shown = () => {}}, pace = {rows: 8, step: 1}) {
             const {gl, size} = this;
-            let {rows, step} = pace, isPreview = true;
+            let {rows, step} = pace, isPreview = true, isChange = false;
             while (this.samples < target()) {
+                if (this.changed) {
+                    this.setParameters(this.changed);
+                    this.changed = undefined;
+                    this.clearFilms();
+                    isPreview = isChange = true;
+                }
                 const look_at = 2 ** Math.floor(Math.log2(Math.max(this.samples, 0.5)) + 1);
                 const next = Math.min(this.samples + (isPreview || rows < size[1] ? 1 : step), look_at, target());
-                for (let row = 0; row < size[1];) {
-                    while (!this.isStopped && isPaused()) await pause(10);
+                for (let row = 0; row < size[1] && (isPreview || !this.changed);) {
+                    while (!this.isStopped && !this.changed && isPaused()) await pause(10);
                     if (this.isStopped || gl.isContextLost()) return false;
                     const started = performance.now();
                     for (let end = this.hasSampleLoop ? next : this.samples + 1;; ++end) {
@@ -308,8 +327,9 @@ void main() {
                     else if (time > LONG)
                         rows = Math.max(1, Math.floor(rows / 2));
                     Object.assign(pace, {rows, step});
-                    if (this.isFirstPass) shown();
+                    if (this.isFirstPass && !isChange) shown();  // the picture before stays until then
                 }
+                if (!isPreview && this.changed) continue;
                 this.films.reverse();
                 this.isFirstPass = false;
                 shown();
@@ -319,7 +339,7 @@ void main() {
                 if (film?.stuck && await this.allowMore(rows))
                     isPreview = true;
                 else if (isPreview) {
-                    isPreview = false;
+                    isPreview = isChange = false;
                     preview(film);
                     rows = Math.max(1, rows >> 3);
                 } else if (film)
@@ -336,9 +356,13 @@ void main() {
             await this.finished();
             if (this.turns >= MOST_TURNS || (performance.now() - started) * MORE > TOO_LONG) return false;
             this.turns = Math.min(this.turns * MORE, MOST_TURNS);
+            this.clearFilms();
+            return true;
+        }
+
+        clearFilms() {
             for (const frame of this.films.flatMap(({frames}) => frames)) this.clear(frame);
             Object.assign(this, {samples: 0, isFirstPass: true});
-            return true;
         }
 
         draw(row, rows, target, isPreview) {

@@ -14,7 +14,7 @@ live.Translation = (() => {
     // Follows the statements of a program and what they declare, so that a name is rewritten only where it means the engine's.
     return class Translation {
         constructor(tokens, layout, textures) {
-            Object.assign(this, {tokens, layout, textures, at: 0, result: [], loops: [], functions: new Map()});
+            Object.assign(this, {tokens, layout, textures, at: 0, result: [], radiances: 0, loops: [], functions: new Map()});
             // From the outermost: what the engine's names mean, and nothing for names of others.
             this.scopes = [new Map(MISSING.map(name => [name, {other: `web_${name}`}])), new Map()];
         }
@@ -134,8 +134,31 @@ live.Translation = (() => {
                     this.until([":"]);
                     return this.copy();
             }
+            const place = this.tokens[start], {call, isDeclaration} = this.recordingCall(place);
+            if (call && !isDeclaration) this.emit("{", place);  // since it may be the whole body of an if
             this.until([";"], this.struct());
             if (this.next === ";" || this.at === start) this.copy();
+            if (call) this.emit(isDeclaration ? call : `${call} }`, place);
+        }
+
+        // The call of a function of record_path.glsl that belongs behind the statement which begins here, if that file is part of
+        // the program: as common/inspection/recording_calls.cpp inserts it.
+        recordingCall(place) {
+            const [first, second, third] = this.tokens.slice(this.at, this.at + 3).map(({text}) => text);
+            const isDeclaration = (first === "vec3" || first === "float") && third === "=";
+            const isMember = second === "." && (third === "throughput" || third === "radiance");
+            const name = isDeclaration ? second : isMember ? third : first, value = isMember ? `${first}.${third}` : name;
+            const starts = isDeclaration ? "_STARTS" : "";
+            if (place.isEngine || !this.functions.has("record_throughput")) return {};
+            if (name === "radiance" && isDeclaration) ++this.radiances;
+            const calls = {
+                throughput: `record_throughput(EVENT_THROUGHPUT${starts}, ${value});`,
+                radiance: `record_radiance(EVENT_RADIANCE${starts}, ${value}, ${isMember ? 0 : this.radiances}u);`,
+                ...(isDeclaration &&
+                    {survival_probability: "record_survival(survival_probability);", flight: "record_flight(flight);"})
+            };
+            const isKnown = name !== "radiance" || isMember || this.radiances > 0;  // declared by the estimator
+            return {call: isKnown && Object.hasOwn(calls, name) ? calls[name] : undefined, isDeclaration};
         }
 
         brackets() {
