@@ -108,14 +108,18 @@ def noise_findings(facts, sights, expected):
             ]
             for name, seen in ratios_of(sights, expected)[kind].items()
         }
-        if much := {facts[name].experiment.subject: those for name, those in much.items() if those}:
-            most = max((value for those in much.values() for _, value in those), key=lambda value: abs(value - 1))
+        if much := {name: those for name, those in much.items() if those}:
+            subjects = {name: facts[name].experiment.subject for name in much}
+            most, first = max(
+                ((value, subjects[name]) for name, those in much.items() for _, value in those), key=lambda pair: abs(pair[0] - 1)
+            )
+            way = f"{'up' if most > 1 else 'down'} to {words.format(most)} of the chapter's own shader"
             found.append(
                 {
-                    "text": shortened(f"up to {words.format(most)} of the chapter's own shader", list(much)),
+                    "text": shortened(way, first, subjects.values()),
                     "evidence": [
-                        f"{subject}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
-                        for subject, those in much.items()
+                        f"{subjects[name]}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
+                        for name, those in much.items()
                     ],
                 }
             )
