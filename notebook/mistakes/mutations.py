@@ -18,7 +18,7 @@ from pathlib import Path
 from threading import Lock
 
 from check import grading
-from check.diagnosis import is_deciding, is_noisy, observe
+from check.diagnosis import is_deciding, observe, too_much_noise
 from check.expected import expected_file
 from check.experiments import experiments_of
 from check.facts import BEYOND_DOUBT, TOLERANCE
@@ -164,11 +164,14 @@ def graded(chapter, text, settings, is_everything):
         wrong = {name: round(max(map(certainty, seen.readings), default=math.inf), 2) for name, seen in facts.items()}
         wrong = {name: value for name, value in wrong.items() if value > 1}
         deciding = [name for name in wrong if facts[name].experiment.decides]
-        deciding += [name for name, seen in sights.items() if is_noisy(facts[name].experiment, seen, known[name])]
+        deciding += [name for name, seen in sights.items() if too_much_noise(facts[name].experiment, seen, known[name])]
         answer = {"compiles": True, "deciding": deciding, "wrong": wrong}
         if not deciding:
             try:
-                answer["verdict"] = grading.judge(submission, settings)[0]["verdict"]
+                result, pictures = grading.judge(submission, settings)
+                if result["verdict"] == "biased" and not wrong:
+                    grading.look_closer(submission, settings, result, pictures)
+                answer["verdict"] = result["verdict"]
             except UserError as error:
                 answer["verdict"] = f"not graded: {error}"
         return answer

@@ -77,7 +77,7 @@ class CheckTest(Checking, ProgramTest):
         self.assertRegex(self.check(*FEW)[2], r"(?m)^so far +[^\n]*no picture is wrong by")
 
     def test_a_bias_that_experiments_confirm_takes_no_more_renders(self):
-        found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "is_noisy": False}
+        found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "too_noisy": None, "wrong": ["angle"]}
         for is_confirmed, form, runs in ((True, "--json", grading.EARLY_RUNS), (False, "--json", 6), (True, "--gradescope", 6)):
             results = []
             with (
@@ -242,11 +242,12 @@ class CheckTest(Checking, ProgramTest):
         geometry = "float geometry = "
         line = text[: text.index(geometry)].count("\n") + 1
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
-        with self.in_one_scene():
+        with self.in_one_scene(), mock.patch.object(command, "judge", grading.judge):
             code, result = self.check_few(file)
         self.assertEqual(
             (code, result["unfinished_file"], result["unfinished_line"], result["diagnosis"]), (1, str(file), line, None)
         )
+        self.assertEqual(result["runs"], grading.EARLY_RUNS)
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
         # One path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
@@ -258,7 +259,15 @@ class CheckTest(Checking, ProgramTest):
         with self.in_one_scene(), mock.patch.object(
             command,
             "diagnose",
-            return_value={"facts": [], "right": [], "mistakes": [], "fits": False, "next": None, "is_beyond_doubt": False},
+            return_value={
+                "facts": [],
+                "right": [],
+                "mistakes": [],
+                "fits": False,
+                "next": None,
+                "is_beyond_doubt": False,
+                "wrong": [],
+            },
         ):
             code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]

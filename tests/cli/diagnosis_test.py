@@ -238,6 +238,29 @@ class SecondLookTest(unittest.TestCase):
     def test_the_other_scenes_count_as_they_were_seen_first(self):
         self.assertEqual(self.judge(("expensive", 0), ("biased", 0), ("correct", 0))[0], "expensive")
 
+    def test_a_closer_look_decides_alone(self):
+        def scene(name, verdict, noise=1.0, value=-0.1):
+            return {"scene": name, "verdict": verdict, "noise": [noise] * 3, "rays": 1.0, "most_noise": 1.5, "image": [value]}
+
+        def render(_, settings, scenes):
+            made.append((scenes, settings["runs"], settings["samples"], settings["first_seed"]))
+            return [{"scene": name, "picture": "closer"} for name in scenes]
+
+        for before, seen_closer, noise, verdict in (
+            (1.0, "biased", 1.0, "biased"),
+            (1.0, "correct", 1.0, "correct"),
+            (1.0, "noisy", 9.0, "noisy"),
+            (9.0, "correct", 1.0, "noisy"),
+        ):
+            made, pictures = [], ["first", "first"]
+            result = {"samples": 8, "scenes": [scene("check_room_2", "biased", before), scene("textured_4", "correct")]}
+            closer = scene("check_room_2", seen_closer, noise, 0.0)
+            with mock.patch.object(grading, "render", render), mock.patch.object(grading, "grade", lambda *_, **__: dict(closer)):
+                grading.look_closer(Submission(3, Path("mine.glsl")), {"first_seed": 1}, result, pictures)
+            self.assertEqual((result["verdict"], [each["verdict"] for each in result["scenes"]]), (verdict, [verdict, "correct"]))
+            self.assertEqual((result["scenes"][0]["image"], pictures), ([0.0], ["closer", "first"]))
+            self.assertEqual(made, [(["check_room_2"], 16, 32, 1 + 2 * grading.MOST_RUNS)])
+
     def test_what_is_sure_needs_none(self):
         for verdict, off in (("biased", 9), ("correct", 1), ("expensive", 0)):
             self.assertEqual(self.judge((verdict, off), ("noisy" if off == 9 else "correct", 0)), (verdict, []))

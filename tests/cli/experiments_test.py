@@ -161,6 +161,15 @@ class ExpectedTest(unittest.TestCase):
         self.assertRegex(found["facts"][0]["text"], "2.00 ± 0.01 times as bright")
 
 
+def verdict(of_pictures, look_closer=None, **found):
+    """The verdict if pictures have this one, and experiments find this."""
+    result = {"verdict": of_pictures, "scenes": [{"invalid_samples": 0}]}
+    result["diagnosis"] = {"wrong": [], "is_beyond_doubt": False, "too_noisy": None} | found
+    with mock.patch.object(diagnosis, "look_closer", look_closer or (lambda *_: None)):
+        diagnosis.decide(None, {}, result, [])
+    return result["verdict"]
+
+
 class DecidingExperiments(unittest.TestCase):
     def verdict_with_noise(self, factor, is_of_noise=True):
         known = {
@@ -168,9 +177,21 @@ class DecidingExperiments(unittest.TestCase):
             for key, values in {"mean": 0.5, "error": 0.001, "noise": 0.01, "noise_error": 0.0001, "rays": 3.0}.items()
         }
         of = Experiment("kept", "light", "why", [Point({}, "x")], decides=True, is_of_noise=is_of_noise)
-        is_noisy = diagnosis.is_noisy(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0)], known)
-        return diagnosis.verdict_with("correct", {"is_beyond_doubt": False, "is_noisy": is_noisy})
+        noise = diagnosis.too_much_noise(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0)], known)
+        self.assertIn(noise, (0, factor))
+        return verdict("correct", too_noisy=noise)
 
     def test_noise_counts_where_an_experiment_is_about_it(self):
         self.assertEqual([self.verdict_with_noise(factor) for factor in (1.4, 2.0)], ["correct", "noisy"])
         self.assertEqual(self.verdict_with_noise(2.0, is_of_noise=False), "correct")
+
+    def test_a_bias_that_no_experiment_shows_takes_a_closer_look(self):
+        def look_closer(submission, settings, result, pictures):  # noqa: ARG001
+            result["verdict"] = seen_closer
+
+        for seen_closer in ("biased", "noisy", "correct"):
+            self.assertEqual(verdict("biased", look_closer), seen_closer)
+            self.assertEqual(verdict("biased", look_closer, wrong=["angle"]), "biased")
+            self.assertEqual(verdict("noisy", look_closer), "noisy")
+        self.assertEqual(verdict("biased", look_closer, too_noisy=["light", 3.0]), "noisy")
+        self.assertEqual(verdict("correct", is_beyond_doubt=True, wrong=["angle"]), "biased")
