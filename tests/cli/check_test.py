@@ -14,6 +14,7 @@ from checking import FEW, SHADER, TECHNIQUE, Checking
 import project
 from check import command, grading
 from check.formats import as_github
+from course.mistakes import bugs_of
 
 # The notebook knows the names of mistakes; the tests that ask for one need it.
 NAMES = unittest.skipUnless(project.KNOWLEDGE.exists(), "names of mistakes are in the notebook")
@@ -344,6 +345,14 @@ class LaterChapters_all(Checking, ProgramTest):
             with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
                 code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
             self.assertEqual(code, 1, f"{replace}: {out}{err}")
+
+    def test_a_path_that_keeps_something_of_the_last_one_is_found(self):
+        kept = [bug for bug in bugs_of(10) if bug.mistake["name"].endswith("-of-the-last-path")]
+        self.assertEqual(len(kept), 3)
+        for bug in kept:
+            with mock.patch.dict(grading.SCENES, {10: (16, ["cornell_box_1"])}):
+                code, out, err = self.check(10, "--runs", 4, "--json", self.write(f"{bug.mistake['name']}.glsl", bug.text))
+            self.assertEqual((code, json.loads(out)["verdict"]), (1, "biased"), f"{bug.mistake['name']}: {out}{err}")
 
     def test_points_that_lose_what_the_chapter_gains_are_noisy(self):
         file = self.planted(9, "scramble_reversed(get_second_dimension(index), keys.y)", "scramble_reversed(index, keys.y)")

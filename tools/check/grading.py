@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from check.expected import DESCRIPTIONS, expected_file
+from includes import shaders_of
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
@@ -25,7 +26,16 @@ SCENES = {
 # Roulette from the first bounce on and with a cap that matters, since otherwise both hardly show. With a lower cap few samples
 # would dominate a picture, since survivors of eight bounces have weight 1/cap^8, and no interval would hold.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
-OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in DESCRIPTIONS.items()}
+# Each thread renders all samples of its pixel where a chapter has a loop of its own over them. Otherwise one sample a thread is all
+# that a small picture needs, and no path follows another.
+ONE_THREAD = ["--max-threads-per-pixel", "1"]
+OPTIONS = {
+    number: [
+        *(ROULETTE if "--roulette-start" in says.get("options", []) else []),
+        *(ONE_THREAD if any(shader.name == "sample_loop.glsl" for shader in shaders_of(number)) else []),
+    ]
+    for number, says in DESCRIPTIONS.items()
+}
 TILE = 16  # pixels
 TILE_FLOOR = 5e-4  # of the mean of the image: see reference_regions()
 FALSE_ALARMS = 0.001  # over all checks of correct shaders
