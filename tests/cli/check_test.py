@@ -350,7 +350,7 @@ class LaterChapters_all(Checking, ProgramTest):
         kept = [bug for bug in bugs_of(10) if bug.mistake["name"].endswith("-of-the-last-path")]
         self.assertEqual(len(kept), 3)
         for bug in kept:
-            with mock.patch.dict(grading.SCENES, {10: (16, ["cornell_box_1"])}):
+            with mock.patch.dict(grading.SCENES, {10: (16, ["textured_4"])}):
                 code, out, err = self.check(10, "--runs", 4, "--json", self.write(f"{bug.mistake['name']}.glsl", bug.text))
             self.assertEqual((code, json.loads(out)["verdict"]), (1, "biased"), f"{bug.mistake['name']}: {out}{err}")
 
