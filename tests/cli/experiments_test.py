@@ -3,6 +3,7 @@
 
 import json
 import re
+import struct
 import tempfile
 import unittest
 from pathlib import Path
@@ -24,7 +25,7 @@ from check.experiments import (
 )
 from check.facts import DARK
 from check.expected import expected_file, known_mistakes
-from check.grading import RUNS, first_seed
+from check.grading import OPTIONS, RUNS, first_seed
 from project import chapter_named, course, read_json
 
 from shown_facts import seen
@@ -120,6 +121,21 @@ class ExperimentsTest(unittest.TestCase):
         self.assertEqual(keys[0] - keys[1], {"multiple_scattering"})
         self.assertEqual(re.findall(r"P[mr] .*", materials[0]), ["Pr 0.4", "Pm 1", "Pr 0.2", "Pm 0"])
         self.assertNotRegex(materials[1], r"P[mr]|Ks")
+
+    def test_a_scene_may_have_a_grid_of_its_own_densities(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for density, name in (([0.5, 10], "smoky.vol"), ("smoke.vol", "smoke.vol")):
+                file = write_scene({"fog": {"extinction": 1, "density": density}}, Path(folder), "smoky")
+                grid = Path(json.loads(file.read_text(encoding="utf-8"))["fog"]["density"])
+                self.assertEqual((grid.name, grid.read_bytes()[:4]), (name, b"VOL\3"))
+            magic, _, x, y, z, channels, *_, first, second = struct.unpack("<4s5i6f2f", (Path(folder) / "smoky.vol").read_bytes())
+            self.assertEqual((x, y, z, channels, first, second), (1, 1, 2, 1, 0.5, 10))
+
+    def test_where_a_chapter_has_a_loop_over_samples_each_thread_takes_all_of_a_pixel(self):
+        self.assertEqual(
+            [chapter for chapter in course() if "--max-threads-per-pixel 1" in " ".join(OPTIONS[chapter])],
+            [chapter for chapter in course() if chapter >= int(chapter_named("path_regeneration")[:2])],
+        )
 
 
 class ExpectedTest(unittest.TestCase):
