@@ -10,7 +10,7 @@ from threading import Lock
 
 import project
 from check import grading
-from check.diagnosis import diagnose, verdict_with
+from check.diagnosis import decide, diagnose
 from check.experiments import experiments_of
 from check.submission import Submission
 from learning.learn import Workshop, digest, own_text, parse, settings
@@ -66,11 +66,12 @@ def confusion(workshop, chapters, is_anew, jobs):
         with tempfile.TemporaryDirectory() as folder:
             submission = Submission(trial.chapter, Path(folder) / "path_trace.glsl", trial.shader)
             submission.file.write_text(trial.text, encoding="utf-8")
-            result = grading.judge(submission, plan)[0]
-            found = diagnose(submission, plan, result["verdict"] == "correct")
+            result, pictures = grading.judge(submission, plan)
+            result["diagnosis"] = found = diagnose(submission, plan, result["verdict"] == "correct")
+            decide(submission, plan, result, pictures)
             answer = {
                 "mistake": trial.mistake,
-                "verdict": verdict_with(result["verdict"], found),
+                "verdict": result["verdict"],
                 "named": [each["name"] for each in found["mistakes"]],
                 "fits": found["fits"],
                 "facts": len(found["facts"]),

@@ -56,6 +56,11 @@ def experiment_digest(chapter, name):
     return digest([[point.scene, point.options, point.samples, point.channel] for point in points], own_text(chapter))
 
 
+def words_of(entry):
+    """What ./lab check says about a mistake."""
+    return {key: entry[key] for key in ("hint", "slide", "section") if key in entry}
+
+
 def own_text(chapter):
     """The code of all of a chapter's own shaders."""
     return code("".join(shader.read_text(encoding="utf-8") for shader in shaders_of(chapter)))
@@ -180,10 +185,7 @@ def planned_knowledge(chapters, before):
                 if kind in old
             }
             entry["mistakes"][bug.mistake["name"]] = (
-                {key: bug.mistake[key] for key in ("hint", "slide")}
-                | {"measured": now, "shows": {}}
-                | seen
-                | ({"unseen": unseen} if unseen else {})
+                words_of(bug.mistake) | {"measured": now, "shows": {}} | seen | ({"unseen": unseen} if unseen else {})
             )
         knowledge[chapter] = entry
     return knowledge
@@ -223,9 +225,7 @@ def learn(workshop, chapters, is_anew, jobs):
     def learn_mistake(bug):
         entry, experiments = knowledge[bug.chapter]["mistakes"][bug.mistake["name"]], knowledge[bug.chapter]["experiments"]
         shown = workshop.shown(bug, {name: experiments[name] for name in entry["unseen"]}, entry)
-        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] = {
-            key: entry[key] for key in ("hint", "slide", "measured")
-        } | shown
+        knowledge[bug.chapter]["mistakes"][bug.mistake["name"]] = words_of(entry) | {"measured": entry["measured"]} | shown
         write(bug.chapter)
 
     run_all("levels", learn_levels, [chapter for chapter in chapters if not knowledge[chapter]["levels"]], jobs)

@@ -13,7 +13,7 @@ from pathlib import Path
 from threading import Lock
 
 from check import grading
-from check.diagnosis import diagnose, verdict_with
+from check.diagnosis import decide, diagnose
 from check.expected import expected_file
 from check.experiments import experiments_of, known_sights, pictures, together
 from check.facts import readings
@@ -70,16 +70,16 @@ def grade(folder, options):
     submission = Submission(says["chapter"], next(folder.glob("*.glsl")))
     those = Workshop(options).settings(LEVELS | {"first_seed": grading.first_seed(options.seed)})
     started = time.monotonic()
-    result = grading.judge(submission, those)[0]
+    result, pictures = grading.judge(submission, those)
     seconds = [round(time.monotonic() - started, 1)]
-    found = diagnose(submission, those, result["verdict"] == "correct")
-    verdict = verdict_with(result["verdict"], found)
+    result["diagnosis"] = found = diagnose(submission, those, result["verdict"] == "correct")
+    decide(submission, those, result, pictures)
     row = {
         "chapter": says["chapter"],
         "is_right": says["is_right"],
         "mistake": says["mistake"],
         "means": says["means"],
-        "verdict": verdict,
+        "verdict": result["verdict"],
         "facts": found["facts"],
         "named": [each["name"] for each in found["mistakes"]],
         "fits": found["fits"],
@@ -87,7 +87,7 @@ def grade(folder, options):
         "seconds": [*seconds, found["seconds"]],
         "measured": measured(folder, options.seed),
     }
-    return row | ({"untrue": untrue(submission, found, those)} if verdict != "correct" else {"untrue": []})
+    return row | ({"untrue": untrue(submission, found, those)} if result["verdict"] != "correct" else {"untrue": []})
 
 
 def main():

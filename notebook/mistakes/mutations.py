@@ -6,7 +6,7 @@
 
 Deleted: each statement, factor and addend, each minus and exclamation mark, each function around a value. Inverted: each operator,
 comparison and condition. Replaced: each number and component, some functions by their counterparts, and neighbouring arguments by each
-other. Those that do not compile do not count. unchanged.json lists those that change nothing, each with why. All others must be
+other. Where threads start paths one after another: each member of a path kept from the last one. Those that do not compile do not count. unchanged.json lists those that change nothing, each with why. All others must be
 found, by ./lab check as a student calls it. With --all-experiments the others are rendered as well, to tell which ones would find what.
 
 Writes its record after each variant, and continues with those that are missing there.
@@ -18,18 +18,22 @@ from pathlib import Path
 from threading import Lock
 
 from check import grading
-from check.diagnosis import is_deciding, is_noisy, observe
+from check.diagnosis import is_deciding, observe, too_much_noise
 from check.expected import expected_file
 from check.experiments import experiments_of
 from check.facts import BEYOND_DOUBT, TOLERANCE
 from check.submission import Submission
 from course.handout import exercise_of, take_out
+from course.mistakes import plant
+from includes import shaders_of
 from learning.learn import digest, own_text
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, course, name_of, number, read_json, text_of, write_json
 from report.batch import run_all
 
 GOES_ON = True
 ENDLESS = 5  # seconds for a point of an experiment, most of which take a fifth of one: many changes make a loop endless
+LOOP, BOUNCES = "sample_loop.glsl", "extend_path.glsl"
+START = "if (!is_alive) path = start_path(start_sample(position, i, seed));"
 UNCHANGED = Path(__file__).with_name("unchanged.json")  # chapter's name -> variant -> why it changes nothing
 COUNTERPARTS = {"sin": "cos", "cos": "sin", "min": "max", "max": "min", "x": "y", "y": "x", "z": "y", "xy": "yz", "true": "false"}
 INVERSE = {
@@ -145,16 +149,38 @@ def mutations(chapter):
     return found
 
 
+def members(shader):
+    """What a path carries from bounce to bounce, by a file with the loop over bounces."""
+    found = re.search(r"struct Path \{(.*?)\n\}", text_of(shader), re.DOTALL)
+    return re.findall(r"^ +\w+ (\w+);", found[1], re.MULTILINE)
+
+
+def kept_members(chapter):
+    """Name -> (shader, text) of the loop over samples in which a path keeps a member of the last one, where a chapter has such a loop and
+    brings it or the path."""
+    loops, bounces = ([shader for shader in shaders_of(chapter) if shader.name == name] for name in (LOOP, BOUNCES))
+    if not loops or CHAPTERS[chapter] not in {shader.parent.name for shader in (*loops, *bounces)}:
+        return {}
+    always, found = set.intersection(*map(set, map(members, bounces))), {}
+    for member in members(bounces[0]):
+        keeping = f"if (i != first) path.{member} = last.{member};"
+        if member not in always:  # but in scenes with media
+            keeping = f"\n#ifdef FEATURE_MEDIA\n{keeping}\n#endif\n"
+        changed = f"if (!is_alive) {{ Path last = path; {START.removeprefix('if (!is_alive) ')} {keeping} }}"
+        found[f"{LOOP}: kept {member}"] = loops[0], plant(text_of(loops[0]), START, changed, LOOP)
+    return found
+
+
 def certainty(reading):
     """How many times as far from what is expected a reading is as a verdict needs."""
     return abs(reading.value - reading.expected) / (BEYOND_DOUBT * reading.error + 2 * TOLERANCE)
 
 
-def graded(chapter, text, settings, is_everything):
+def graded(chapter, shader, text, settings, is_everything):
     """What ./lab check finds: the experiments that are wrong beyond doubt, and if none that decides is, the verdict on the pictures."""
     known = read_json(expected_file(chapter))["experiments"]
     with tempfile.TemporaryDirectory() as folder:
-        submission = Submission(chapter, Path(folder) / "mutation.glsl", shader_of(chapter))
+        submission = Submission(chapter, Path(folder) / "mutation.glsl", shader)
         submission.file.write_text(text, encoding="utf-8")
         chosen = (lambda *_: True) if is_everything else is_deciding
         facts, sights = observe(chapter, settings | {"shaders": submission.options, "time_limit": ENDLESS}, known, chosen)
@@ -164,11 +190,14 @@ def graded(chapter, text, settings, is_everything):
         wrong = {name: round(max(map(certainty, seen.readings), default=math.inf), 2) for name, seen in facts.items()}
         wrong = {name: value for name, value in wrong.items() if value > 1}
         deciding = [name for name in wrong if facts[name].experiment.decides]
-        deciding += [name for name, seen in sights.items() if is_noisy(facts[name].experiment, seen, known[name])]
+        deciding += [name for name, seen in sights.items() if too_much_noise(facts[name].experiment, seen, known[name])]
         answer = {"compiles": True, "deciding": deciding, "wrong": wrong}
         if not deciding:
             try:
-                answer["verdict"] = grading.judge(submission, settings)[0]["verdict"]
+                result, pictures = grading.judge(submission, settings)
+                if result["verdict"] == "biased" and not wrong:
+                    grading.look_closer(submission, settings, result, pictures)
+                answer["verdict"] = result["verdict"]
             except UserError as error:
                 answer["verdict"] = f"not graded: {error}"
         return answer
@@ -178,10 +207,15 @@ def is_found(answer):
     return bool(answer["deciding"]) or answer["verdict"] != "correct"
 
 
+def all_changes(chapter):
+    """Name -> (shader, text) of each change."""
+    return {name: (shader_of(chapter), text) for name, text in mutations(chapter).items()} | kept_members(chapter)
+
+
 def refuse_unless_right(chapter, settings):
     """A machine that renders nothing would find everything."""
     file = shader_of(chapter)
-    answer = graded(chapter, text_of(file), settings, False)
+    answer = graded(chapter, file, text_of(file), settings, False)
     if is_found(answer):
         raise UserError(f"{file.relative_to(ROOT)}: unchanged, too, it is not correct: {answer}")
 
@@ -211,7 +245,9 @@ def main():
         "first_seed": grading.first_seed(0),
         "is_quiet": True,
     }
-    everything = {(chapter, name): text for chapter in options.chapters for name, text in mutations(chapter).items()}
+    everything = {
+        (chapter, name): where_and_what for chapter in options.chapters for name, where_and_what in all_changes(chapter).items()
+    }
     if options.list:
         print("\n".join(f"{chapter} {name}" for chapter, name in everything))
         return
@@ -219,10 +255,10 @@ def main():
     record, lock = read_json(options.output) if options.output.exists() else {}, Lock()
 
     def grade(item):
-        (chapter, name), text = item
+        (chapter, name), (shader, text) = item
         key, stamp = f"{chapter} {name}", digest(text, options.all_experiments, repr(experiments_of(chapter)), own_text(chapter))
         if record.get(key, {}).get("stamp") != stamp:
-            answer = graded(chapter, text, settings, options.all_experiments) | {"stamp": stamp}
+            answer = graded(chapter, shader, text, settings, options.all_experiments) | {"stamp": stamp}
             with lock:
                 record[key] = answer
                 options.output.parent.mkdir(exist_ok=True)

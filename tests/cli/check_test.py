@@ -14,6 +14,7 @@ from checking import FEW, SHADER, TECHNIQUE, Checking
 import project
 from check import command, grading
 from check.formats import as_github
+from course.mistakes import bugs_of
 
 # The notebook knows the names of mistakes; the tests that ask for one need it.
 NAMES = unittest.skipUnless(project.KNOWLEDGE.exists(), "names of mistakes are in the notebook")
@@ -77,7 +78,7 @@ class CheckTest(Checking, ProgramTest):
         self.assertRegex(self.check(*FEW)[2], r"(?m)^so far +[^\n]*no picture is wrong by")
 
     def test_a_bias_that_experiments_confirm_takes_no_more_renders(self):
-        found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "is_noisy": False}
+        found = {"facts": [], "mistakes": [], "fits": False, "next": None, "right": [], "too_noisy": None, "wrong": ["angle"]}
         for is_confirmed, form, runs in ((True, "--json", grading.EARLY_RUNS), (False, "--json", 6), (True, "--gradescope", 6)):
             results = []
             with (
@@ -242,11 +243,12 @@ class CheckTest(Checking, ProgramTest):
         geometry = "float geometry = "
         line = text[: text.index(geometry)].count("\n") + 1
         file = self.write("mine.glsl", text.replace(geometry, "float geometry = 0.0; // TODO: "))
-        with self.in_one_scene():
+        with self.in_one_scene(), mock.patch.object(command, "judge", grading.judge):
             code, result = self.check_few(file)
         self.assertEqual(
             (code, result["unfinished_file"], result["unfinished_line"], result["diagnosis"]), (1, str(file), line, None)
         )
+        self.assertEqual(result["runs"], grading.EARLY_RUNS)
 
     def test_more_noise_and_rays_than_needed_are_reported(self):
         # One path too many, and each sample counts twice or not at all: the mean stays, the noise more than doubles.
@@ -258,7 +260,15 @@ class CheckTest(Checking, ProgramTest):
         with self.in_one_scene(), mock.patch.object(
             command,
             "diagnose",
-            return_value={"facts": [], "right": [], "mistakes": [], "fits": False, "next": None, "is_beyond_doubt": False},
+            return_value={
+                "facts": [],
+                "right": [],
+                "mistakes": [],
+                "fits": False,
+                "next": None,
+                "is_beyond_doubt": False,
+                "wrong": [],
+            },
         ):
             code, result = self.check_few(self.write("mine.glsl", text))
         box = result["scenes"][0]
@@ -335,6 +345,14 @@ class LaterChapters_all(Checking, ProgramTest):
             with mock.patch.dict(grading.SCENES, {8: (12, ["check_sky_4"])}):
                 code, out, err = self.check(8, "--runs", 5, "--json", self.planted(8, find, replace))
             self.assertEqual(code, 1, f"{replace}: {out}{err}")
+
+    def test_a_path_that_keeps_something_of_the_last_one_is_found(self):
+        kept = [bug for bug in bugs_of(10) if bug.mistake["name"].endswith("-of-the-last-path")]
+        self.assertEqual(len(kept), 3)
+        for bug in kept:
+            with mock.patch.dict(grading.SCENES, {10: (16, ["textured_4"])}):
+                code, out, err = self.check(10, "--runs", 4, "--json", self.write(f"{bug.mistake['name']}.glsl", bug.text))
+            self.assertEqual((code, json.loads(out)["verdict"]), (1, "biased"), f"{bug.mistake['name']}: {out}{err}")
 
     def test_points_that_lose_what_the_chapter_gains_are_noisy(self):
         file = self.planted(9, "scramble_reversed(get_second_dimension(index), keys.y)", "scramble_reversed(index, keys.y)")

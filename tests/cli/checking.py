@@ -33,7 +33,7 @@ class Checking:
             patch.start()
             self.addCleanup(patch.stop)
 
-    def judge_once(self, submission, settings, watch, ends_early):  # noqa: ARG002 (the next format may need all runs)
+    def judge_once(self, submission, settings, watch, is_enough):  # noqa: ARG002 (the next format may need all runs)
         """judge(), but renders a shader only once for all formats in which the command reports the same verdict."""
         key = (
             submission.file.read_bytes(),

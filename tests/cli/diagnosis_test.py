@@ -104,7 +104,7 @@ class FindingsTest(unittest.TestCase):
         (told,) = self.told(
             bounces, seen([0.25] * 3, subject="light of a wall"), seen([1.0, 0.5, 0.25], subject="light of the sky")
         )
-        self.assertRegex(told["text"], "0.50 ± 0.01 times as bright with each bounce .*factor 1/2.*: light")
+        self.assertRegex(told["text"], "0.50 ± 0.01 times as bright with each bounce .*factor 1/2.*: light in a ball and 2 more")
         self.assertEqual(len(told["evidence"]), 3)
         self.assertEqual(len(self.told(bounces, seen([0.4] * 3, subject="light of a wall"))), 2, "no power")
         (told,) = self.told(seen([0.97] * 2, {"per": "with each bounce"}, (2, 3)))
@@ -118,8 +118,30 @@ class FindingsTest(unittest.TestCase):
             [each["text"] for each in told],
             [
                 "off by 1 / the cosine of the angle: light of a lamp",
-                "too bright, up to 4.60 times: light 3; light 2; light 1; light 0",
+                "too bright, up to 4.60 times: light 3; light 0; light 1; light 2",
                 "too dark, down to 0.50 times: light 5",
+            ],
+        )
+
+    def test_a_number_is_that_of_the_subject_that_is_named_first(self):
+        bright = "light of a lamp that stands in the farthest corner of a room, seen in a mirror"
+        values = {bright: [1.0, 1.7, 9.0], "light": [1.0, 1.2, 1.5], "all light": [1.0, 1.1, 0.2], "sky": [1.0, 3.0, 0.9]}
+        told = self.told(*(seen(those, subject=subject) for subject, those in values.items()))
+        self.assertEqual(
+            {each["text"] for each in told},
+            {f"too bright, up to 9.00 times: {bright} and 1 more", "too bright and too dark, down to 0.20 times: all light; sky"},
+        )
+
+    def test_the_variance_is_that_of_the_subject_that_is_named_first(self):
+        values = {"fog": 2.0, "two lamps": 9.0, "sky": 3.0}
+        facts = {subject: seen([1.0], subject=subject, name=subject) for subject in values}
+        known = {"mean": [0.5], "error": [0.001], "noise": [1.0], "noise_error": [0.01], "rays": [2.0]}
+        sights = {subject: [Sight(0.5, 0.001, value, 0.01, 1.0)] for subject, value in values.items()}
+        self.assertEqual(
+            [each["text"] for each in diagnosis.noise_findings(facts, sights, dict.fromkeys(values, known))],
+            [
+                "up to 9 times the variance of the chapter's own shader: two lamps; fog; sky",
+                "down to 0.5 times the rays of the chapter's own shader: fog; sky; two lamps",
             ],
         )
 
@@ -159,25 +181,15 @@ class FindingsTest(unittest.TestCase):
                 for those in ([0.0] * len(values), values, [1 / value for value in values]):
                     shown = [sight(value) for value in those]
                     for told in self.told(fact(one, shown, [sight(1.0)] * len(those))):
-                        self.assertLessEqual(len(told["text"]), LONGEST)
+                        self.assertTrue(len(told["text"]) <= LONGEST or told["text"].endswith(one.subject), told["text"])
                         self.assertEqual(told["text"].count("\n"), 0)
 
-    def test_a_text_that_is_cut_does_not_end_in_the_middle_of_a_thought(self):
-        coloured = "light in a glowing ball with a coloured wall, after three bounces"
-        self.assertEqual(
-            shortened("0.82 ± 0.01 times as bright as it should be", [coloured]),
-            "0.82 ± 0.01 times as bright: light in a glowing ball with a coloured wall …",
-        )
-        self.assertEqual(
-            shortened("up to 1.4 times the rays of the chapter's own shader", [coloured]),
-            "up to 1.4 times the rays: light in a glowing ball with a coloured wall …",
-        )
-        self.assertEqual(
-            shortened(
-                "too dark", ["light of a lamp that stands in the farthest corner of a room with a mirror in a frame of"] * 2
-            ),
-            "too dark: light of a lamp that stands in the farthest corner of a room … and 1 more",
-        )
+    def test_a_subject_is_never_cut_since_its_end_tells_it_from_others(self):
+        several = "light of a large lamp after one bounce, where each thread renders several samples"
+        for way in ("0.82 ± 0.01 times as bright", "up to 1.4 times the rays"):
+            for spared in (" as it should be", " of the chapter's own shader"):
+                self.assertEqual(shortened(way + spared, several, [several]), f"{way}: {several}")
+                self.assertEqual(shortened(way + spared, several, ["light", several, several]), f"{way}: {several} and 1 more")
 
     def test_what_a_student_reads_fits_into_a_line(self):
         self.assertLessEqual(MARGIN + LONGEST, LINE, "facts")
@@ -225,6 +237,29 @@ class SecondLookTest(unittest.TestCase):
 
     def test_the_other_scenes_count_as_they_were_seen_first(self):
         self.assertEqual(self.judge(("expensive", 0), ("biased", 0), ("correct", 0))[0], "expensive")
+
+    def test_a_closer_look_decides_alone(self):
+        def scene(name, verdict, noise=1.0, value=-0.1):
+            return {"scene": name, "verdict": verdict, "noise": [noise] * 3, "rays": 1.0, "most_noise": 1.5, "image": [value]}
+
+        def render(_, settings, scenes):
+            made.append((scenes, settings["runs"], settings["samples"], settings["first_seed"]))
+            return [{"scene": name, "picture": "closer"} for name in scenes]
+
+        for before, seen_closer, noise, verdict in (
+            (1.0, "biased", 1.0, "biased"),
+            (1.0, "correct", 1.0, "correct"),
+            (1.0, "noisy", 9.0, "noisy"),
+            (9.0, "correct", 1.0, "noisy"),
+        ):
+            made, pictures = [], ["first", "first"]
+            result = {"samples": 8, "scenes": [scene("check_room_2", "biased", before), scene("textured_4", "correct")]}
+            closer = scene("check_room_2", seen_closer, noise, 0.0)
+            with mock.patch.object(grading, "render", render), mock.patch.object(grading, "grade", lambda *_, **__: dict(closer)):
+                grading.look_closer(Submission(3, Path("mine.glsl")), {"first_seed": 1}, result, pictures)
+            self.assertEqual((result["verdict"], [each["verdict"] for each in result["scenes"]]), (verdict, [verdict, "correct"]))
+            self.assertEqual((result["scenes"][0]["image"], pictures), ([0.0], ["closer", "first"]))
+            self.assertEqual(made, [(["check_room_2"], 16, 32, 1 + 2 * grading.MOST_RUNS)])
 
     def test_what_is_sure_needs_none(self):
         for verdict, off in (("biased", 9), ("correct", 1), ("expensive", 0)):

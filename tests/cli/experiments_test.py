@@ -3,6 +3,7 @@
 
 import json
 import re
+import struct
 import tempfile
 import unittest
 from pathlib import Path
@@ -24,7 +25,7 @@ from check.experiments import (
 )
 from check.facts import DARK
 from check.expected import expected_file, known_mistakes
-from check.grading import RUNS, first_seed
+from check.grading import OPTIONS, RUNS, first_seed
 from project import chapter_named, course, read_json
 
 from shown_facts import seen
@@ -121,6 +122,21 @@ class ExperimentsTest(unittest.TestCase):
         self.assertEqual(re.findall(r"P[mr] .*", materials[0]), ["Pr 0.4", "Pm 1", "Pr 0.2", "Pm 0"])
         self.assertNotRegex(materials[1], r"P[mr]|Ks")
 
+    def test_a_scene_may_have_a_grid_of_its_own_densities(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for density, name in (([0.5, 10], "smoky.vol"), ("smoke.vol", "smoke.vol")):
+                file = write_scene({"fog": {"extinction": 1, "density": density}}, Path(folder), "smoky")
+                grid = Path(json.loads(file.read_text(encoding="utf-8"))["fog"]["density"])
+                self.assertEqual((grid.name, grid.read_bytes()[:4]), (name, b"VOL\3"))
+            magic, _, x, y, z, channels, *_, first, second = struct.unpack("<4s5i6f2f", (Path(folder) / "smoky.vol").read_bytes())
+            self.assertEqual((x, y, z, channels, first, second), (1, 1, 2, 1, 0.5, 10))
+
+    def test_where_a_chapter_has_a_loop_over_samples_each_thread_takes_all_of_a_pixel(self):
+        self.assertEqual(
+            [chapter for chapter in course() if "--max-threads-per-pixel 1" in " ".join(OPTIONS[chapter])],
+            [chapter for chapter in course() if chapter >= int(chapter_named("path_regeneration")[:2])],
+        )
+
 
 class ExpectedTest(unittest.TestCase):
     """What is recorded of the chapters' own shaders."""
@@ -161,6 +177,15 @@ class ExpectedTest(unittest.TestCase):
         self.assertRegex(found["facts"][0]["text"], "2.00 ± 0.01 times as bright")
 
 
+def verdict(of_pictures, look_closer=None, **found):
+    """The verdict if pictures have this one, and experiments find this."""
+    result = {"verdict": of_pictures, "scenes": [{"invalid_samples": 0}]}
+    result["diagnosis"] = {"wrong": [], "is_beyond_doubt": False, "too_noisy": None} | found
+    with mock.patch.object(diagnosis, "look_closer", look_closer or (lambda *_: None)):
+        diagnosis.decide(None, {}, result, [])
+    return result["verdict"]
+
+
 class DecidingExperiments(unittest.TestCase):
     def verdict_with_noise(self, factor, is_of_noise=True):
         known = {
@@ -168,9 +193,21 @@ class DecidingExperiments(unittest.TestCase):
             for key, values in {"mean": 0.5, "error": 0.001, "noise": 0.01, "noise_error": 0.0001, "rays": 3.0}.items()
         }
         of = Experiment("kept", "light", "why", [Point({}, "x")], decides=True, is_of_noise=is_of_noise)
-        is_noisy = diagnosis.is_noisy(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0)], known)
-        return diagnosis.verdict_with("correct", {"is_beyond_doubt": False, "is_noisy": is_noisy})
+        noise = diagnosis.too_much_noise(of, [Sight(0.5, 0.001, 0.01 * factor, 0.0001, 3.0)], known)
+        self.assertIn(noise, (0, factor))
+        return verdict("correct", too_noisy=noise)
 
     def test_noise_counts_where_an_experiment_is_about_it(self):
         self.assertEqual([self.verdict_with_noise(factor) for factor in (1.4, 2.0)], ["correct", "noisy"])
         self.assertEqual(self.verdict_with_noise(2.0, is_of_noise=False), "correct")
+
+    def test_a_bias_that_no_experiment_shows_takes_a_closer_look(self):
+        def look_closer(submission, settings, result, pictures):  # noqa: ARG001
+            result["verdict"] = seen_closer
+
+        for seen_closer in ("biased", "noisy", "correct"):
+            self.assertEqual(verdict("biased", look_closer), seen_closer)
+            self.assertEqual(verdict("biased", look_closer, wrong=["angle"]), "biased")
+            self.assertEqual(verdict("noisy", look_closer), "noisy")
+        self.assertEqual(verdict("biased", look_closer, too_noisy=["light", 3.0]), "noisy")
+        self.assertEqual(verdict("correct", is_beyond_doubt=True, wrong=["angle"]), "biased")

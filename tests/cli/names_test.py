@@ -11,7 +11,7 @@ import tools_path  # noqa: F401  (first: it finds the others)
 from check import diagnosis
 from check.diagnosis import reason
 from check.names import names_of, similar_to
-from check.words import MOST_FACTS, headline, hint_lines, laid_out, smallest_bias
+from check.words import MOST_FACTS, headline, hint_lines, laid_out, scene_words, smallest_bias
 
 from shown_facts import seen
 
@@ -128,6 +128,28 @@ class SimilarNamesTest(unittest.TestCase):
         ):
             mistakes = [{"hint": "?", "slide": slide, "section": section}]
             self.assertRegex(dict(hint_lines(graded(found | {"mistakes": mistakes})))["read again"], page)
+
+    def test_noise_is_told_with_its_limit_and_that_the_mean_is_right(self):
+        scene = {"scene": "lamps", "verdict": "noisy", "noise": [1.234, 1.2, 1.3], "most_noise": 1.1}
+        found = {"facts": [], "right": [], "next": None, "mistakes": [], "fits": False, "too_noisy": ["light of a lamp", 11.3]}
+        for scenes, words in (
+            ([scene], "the mean is right, but lamps has 1.23 times the noise of the chapter's own shader, and 1.10 is the limit"),
+            (
+                [scene | {"verdict": "correct"}],
+                "the mean is right, but light of a lamp has 11 times the variance of the chapter's own shader, and 1.50 is the limit",
+            ),
+        ):
+            result = graded(found) | {"verdict": "noisy", "scenes": scenes}
+            self.assertEqual(headline(result), ("noisy", words))
+            asked = found | {"mistakes": [{"hint": "1?", "slide": "s", "section": None}], "fits": True}
+            result |= {"diagnosis": asked}
+            self.assertEqual((headline(result)[1], hint_lines(result)[0]), ("1?", ("seen", words)))
+
+    def test_a_scene_that_tells_nothing_is_not_said_to_tell_something(self):
+        for detectable, is_told in ((0.02, True), (6.1, False)):
+            scene = {"verdict": "correct", "image": [{"value": 0.1, "is_biased": False, "detectable": detectable}]}
+            scene |= {"tiles": [], "invalid_samples": 0, "noise": [None] * 3, "rays": 1.0}
+            self.assertEqual("would have shown" in " ".join(scene_words(scene)), is_told)
 
     def test_what_is_no_light_has_no_percentage(self):
         found = {"facts": [], "right": [], "next": None, "mistakes": [], "fits": False}

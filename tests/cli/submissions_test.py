@@ -134,6 +134,10 @@ class GradedTogether(Submissions, ProgramTest):
                 err, rf"\Aerror: .*{file.name}: defines no function of chapter 3's shaders.*path_trace.glsl, {TECHNIQUE}\n\Z"
             )
 
+    def test_an_empty_file_is_called_empty(self):
+        for name in ("anna.glsl", TECHNIQUE):
+            self.assert_tool_refused(["check", 3, self.write(name, "\n")], f"{name}: is empty", code=2)
+
     def check(self, *arguments):
         code, out, err = self.run_tool("check", *arguments, "--json")
         self.assertIn(code, (0, 1), err)
@@ -250,6 +254,11 @@ class WholeClass(Submissions, ProgramTest):
         self.assertEqual([row[1] for row in self.grade()[1].values()], [None, None], "both are known")
         self.submit("anna/path_trace.glsl", "other text")
         self.assertEqual([row[1] for row in self.grade()[1].values()], [f"anna/{TECHNIQUE}", None])
+
+    def test_mistakes_without_a_name_are_not_counted_as_one(self):
+        names = ["same?"] * 2 + [None] * 3
+        rows = [{"causes": [name or folder.NAMELESS], "facts": "too dark | more"} for name in names]
+        self.assertEqual(folder.summary(rows), ["2 of 5: same?: too dark", f"3 of 5: {folder.NAMELESS}"])
 
     def test_the_output_is_no_submission(self):
         self.submit("anna.glsl")

@@ -9,7 +9,7 @@ from check.experiments import experiments_of, known_sights, pictures, together, 
 from check.expected import DESCRIPTIONS, expected_file, known_mistakes
 from check.facts import SURE, Fact, fact, readings
 from check.findings import findings, shortened
-from check.grading import TOO_MUCH, first_seed
+from check.grading import TOO_MUCH, first_seed, look_closer
 from check.names import names_of, ratios_of, similar_to
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from report.batch import Batch
@@ -108,25 +108,30 @@ def noise_findings(facts, sights, expected):
             ]
             for name, seen in ratios_of(sights, expected)[kind].items()
         }
-        if much := {facts[name].experiment.subject: those for name, those in much.items() if those}:
-            most = max((value for those in much.values() for _, value in those), key=lambda value: abs(value - 1))
+        if much := {name: those for name, those in much.items() if those}:
+            subjects = {name: facts[name].experiment.subject for name in much}
+            most, first = max(
+                ((value, subjects[name]) for name, those in much.items() for _, value in those), key=lambda pair: abs(pair[0] - 1)
+            )
+            way = f"{'up' if most > 1 else 'down'} to {words.format(most)} of the chapter's own shader"
             found.append(
                 {
-                    "text": shortened(f"up to {words.format(most)} of the chapter's own shader", list(much)),
+                    "text": shortened(way, first, subjects.values()),
                     "evidence": [
-                        f"{subject}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
-                        for subject, those in much.items()
+                        f"{subjects[name]}: {', '.join(f'{at}: {words.format(value)}' for at, value in those)} of the chapter's own shader"
+                        for name, those in much.items()
                     ],
                 }
             )
     return found
 
 
-def is_noisy(experiment, sights, expected):
-    """Whether an experiment about noise has too much of it, as grade() judges pictures."""
+def too_much_noise(experiment, sights, expected):
+    """The variance in an experiment about noise, in multiples of the chapter's own, if it is too large, as grade() judges pictures; or 0."""
     ratios = ratios_of({experiment.name: sights}, {experiment.name: expected})
     pairs = zip(ratios["noise"][experiment.name], ratios["rays"][experiment.name])
-    return experiment.is_of_noise and any((noise - SURE * error) * min(rays, 1) > TOO_MUCH for (noise, error), (rays, _) in pairs)
+    much = [noise for (noise, error), (rays, _) in pairs if (noise - SURE * error) * min(rays, 1) > TOO_MUCH]
+    return max(much, default=0) if experiment.is_of_noise else 0
 
 
 def next_step(submission, facts, sights, expected):
@@ -155,8 +160,12 @@ def reason(facts, sights, known, is_correct):
     """What the facts say: what is wrong, each with a short text and its evidence, subjects that are right, and mistakes of the catalogue
     that fit or, if none fits, may fit."""
     told = [found.told() for found in findings(facts.values())]
-    noisy = any(is_noisy(facts[name].experiment, sights[name], known["experiments"][name]) for name in sights)
-    told = told or (noise_findings(facts, sights, known["experiments"]) if noisy or not is_correct else [])
+    noises = [
+        (too_much_noise(facts[name].experiment, seen, known["experiments"][name]), facts[name].experiment.subject)
+        for name, seen in sights.items()
+    ]
+    noise, noisiest = max(noises, default=(0, None))
+    told = told or (noise_findings(facts, sights, known["experiments"]) if noise or not is_correct else [])
     wrong = [name for name, seen in facts.items() if not seen.is_right]
     fitting = names_of(facts, sights, known["mistakes"], known["experiments"]) if told else []
     names = fitting or (similar_to(facts, known["mistakes"]) if wrong else [])
@@ -166,7 +175,7 @@ def reason(facts, sights, known, is_correct):
         "wrong": wrong,
         "fits": bool(fitting),
         "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
-        "is_noisy": noisy,
+        "too_noisy": [noisiest, round(noise, 2)] if noise else None,
         "mistakes": [
             {"name": name} | {key: known["mistakes"][name].get(key) for key in ("hint", "slide", "section")} for name in names
         ],
@@ -189,8 +198,11 @@ def diagnose(submission, settings, is_correct=False):
     }
 
 
-def verdict_with(verdict, diagnosis):
-    """The verdict on a shader. Experiments may find a bias or noise where the pictures of a correct one do not look."""
-    if verdict != "correct":
-        return verdict
-    return "biased" if diagnosis["is_beyond_doubt"] else "noisy" if diagnosis["is_noisy"] else "correct"
+def decide(submission, settings, result, pictures):
+    """The verdict on a shader, from the pictures that judge() has returned and the diagnosis. A bias that no experiment shows needs a
+    closer look, and experiments may find a bias or noise where the pictures of a correct shader do not look."""
+    found = result["diagnosis"]
+    if result["verdict"] == "biased" and not found["wrong"] and not any(scene["invalid_samples"] for scene in result["scenes"]):
+        look_closer(submission, settings, result, pictures)
+    if result["verdict"] == "correct":
+        result["verdict"] = "biased" if found["is_beyond_doubt"] else "noisy" if found["too_noisy"] else "correct"

@@ -6,6 +6,7 @@ is compared with what the chapter's own shader finds there, as recorded in asset
 """
 import json
 import math
+import struct
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -170,6 +171,12 @@ def colour(value):
     return " ".join(f"{number:.9g}" for number in np.broadcast_to(value, 3))
 
 
+def grid_along_z(densities):
+    """A file with a grid of densities that differ along z alone."""
+    header = struct.pack("<4s5i6f", b"VOL\3", 1, 1, 1, len(densities), 1, 0, 0, 0, 1, 1, 1)
+    return header + np.array(densities, "<f4").tobytes()
+
+
 def write_scene(scene, folder, name):
     """Writes a scene and its mesh; returns the scene's file."""
     vertices, normals, faces, materials = [], [], [], []
@@ -204,7 +211,12 @@ def write_scene(scene, folder, name):
         background = background | {"light_probe": str(ROOT / "assets/light_probes" / background["light_probe"])}
     others = {key: scene[key] for key in OF_THE_SCENE if key in scene}
     if "density" in others.get("fog", {}):
-        others["fog"] = others["fog"] | {"density": str(ROOT / "assets/volumes" / others["fog"]["density"])}
+        density = others["fog"]["density"]
+        if isinstance(density, str):
+            grid = ROOT / "assets/volumes" / density
+        else:
+            (grid := folder / f"{name}.vol").write_bytes(grid_along_z(density))
+        others["fog"] = others["fog"] | {"density": str(grid)}
     file = folder / f"{name}.json"
     file.write_text(
         json.dumps(

@@ -2,16 +2,15 @@
 the same cause."""
 import math
 import re
-import textwrap
 from dataclasses import dataclass, field
 
 from check.facts import TOLERANCE, common_value, constant, number, power_law
 
-LONGEST = 85  # characters of a finding's text: with its head, a line of 100
-SPARED = (" as it should be", " of the chapter's own shader")  # what goes without saying where a text would be too long
-OPEN_WORDS = "an?|the|and|of|in|on|by|to|from|with|under|after|behind|that|which|what|whose|where|is|are|has"  # no end of a text
+LONGEST = 85  # characters of a finding's text with several subjects: with its head, a line of 100
+SPARED = r" as it should be| of the chapter's own shader"  # what goes without saying where a text would be too long
 SHARE = 0.5  # of what is wrong: a factor that fewer experiments have in common is a coincidence
 INVALID = "infinite or not a number"
+NOTHING = 1e-9  # a factor that is as good as 0
 BOUNCES = 4  # at most, of an experiment
 
 
@@ -21,27 +20,25 @@ class Finding:
 
     way: str
     facts: list = field(default_factory=list)
-    is_vague: bool = False  # too bright or too dark, and nothing else in common
+    farthest: object = None  # the fact that has the number, if they are too bright or too dark and have nothing else in common
 
     def told(self):
-        subjects = sorted(dict.fromkeys(seen.experiment.subject for seen in self.facts), key=len)
-        return {"text": shortened(self.way, subjects), "evidence": [seen.sentence for seen in self.facts]}
+        subjects = [seen.experiment.subject for seen in self.facts]
+        first = self.farthest.experiment.subject if self.farthest else min(subjects, key=len)
+        return {"text": shortened(self.way, first, subjects), "evidence": [seen.sentence for seen in self.facts]}
 
 
-def shortened(way, subjects):
-    """A text with as many of the subjects as fit into it. A subject that does not fit ends at a comma or before words that need another."""
-    brief = way
-    for words in SPARED:
-        brief = brief.replace(words, "")
+def shortened(way, first, subjects):
+    """A text with as many of the subjects as fit into it, the first one in any case and in full: what tells it from others stands at its
+    end, such as where it is seen, or with what."""
+    subjects = [first, *sorted(set(subjects) - {first}, key=lambda subject: (len(subject), subject))]
+    brief = re.sub(SPARED, "", way)
     for start in (way, brief):
         for count in range(len(subjects), 0, -1):
             rest = f" and {len(subjects) - count} more" if count < len(subjects) else ""
             if len(text := f"{start}: {'; '.join(subjects[:count])}{rest}") <= LONGEST:
                 return text
-    end = f" … and {len(subjects) - 1} more" if len(subjects) > 1 else " …"
-    subject = textwrap.shorten(subjects[0], max(LONGEST - len(f"{brief}: "), len(end) + 1), placeholder=end).removesuffix(end)
-    subject = subject.rpartition(",")[0] or subject
-    return f"{brief}: {re.sub(f'( ({OPEN_WORDS}))+$', '', subject)}{end}"
+    return f"{brief}: {first}{rest}"
 
 
 def wrong_readings(seen):
@@ -102,16 +99,23 @@ def same_factors(facts):
     return [(common_value(readings), those) for readings, those in groups]
 
 
-def side(those):
-    """What facts that have nothing else in common say together."""
-    values = [reading.value for seen in those for reading in wrong_readings(seen)]
-    if min(values) > 1:
-        return f"too bright, up to {max(values):.2f} times"
-    return (
-        f"too dark, down to {min(values):.2f} times"
-        if max(values) < 1
-        else f"{min(values):.2f} to {max(values):.2f} times as bright"
+def sides(seen):
+    """On which sides of what is right the wrong readings of a fact are, in words."""
+    return " and ".join(
+        words
+        for words, is_bright in (("too bright", True), ("too dark", False))
+        if any((reading.value > 1) == is_bright for reading in wrong_readings(seen))
     )
+
+
+def farthest_value(seen):
+    """The wrong reading that is the most times too bright or too dark."""
+    return max((reading.value for reading in wrong_readings(seen)), key=distance)
+
+
+def distance(value):
+    """How far a factor is from 1, on either side."""
+    return abs(math.log(max(value, NOTHING)))
 
 
 def is_wrong_throughout(seen):
@@ -127,7 +131,7 @@ def rank(finding):
     """What findings are ordered by: what is not even a number first, what has only its side in common last, and the more points are
     beyond doubt, the earlier."""
     points = sum(reading.is_beyond_doubt for seen in finding.facts for reading in seen.readings)
-    return finding.way == INVALID, not finding.is_vague, points
+    return finding.way == INVALID, not finding.farthest, points
 
 
 def findings(facts):
@@ -156,11 +160,12 @@ def findings(facts):
             *those,
         )
     rest = [seen for seen in others if not any(seen is each for _, those in factors for each in those)]
-    for is_bright in (True, False):
-        those = [seen for seen in rest if any(reading.value > 1 for reading in wrong_readings(seen)) == is_bright]
-        if those:
-            add(side(those), *those)
-            found[side(those)].is_vague = True
+    for side in dict.fromkeys(map(sides, rest)):
+        those = [seen for seen in rest if sides(seen) == side]
+        farthest = max(those, key=lambda seen: distance(farthest_value(seen)))
+        value = farthest_value(farthest)
+        add(way := f"{side}, {'up' if value > 1 else 'down'} to {value:.2f} times", *those)
+        found[way].farthest = farthest
     for finding in found.values():
         finding.facts.sort(key=strongest, reverse=True)
     return sorted(found.values(), key=rank, reverse=True)

@@ -20,6 +20,7 @@ from report.measurement import digest_of_sources
 UNGRADED = 2  # exit code
 NO_SUBMISSION = (".", "__MACOSX")  # what names begin with in archives of other systems
 MOST_COMMON = 5  # number of causes that sum up a class
+NAMELESS = "no single common mistake fits; they may differ: see what was seen of each"
 COLUMNS = ["submission", "verdict", "unfinished_line", "facts", "mistakes", "questions", "error", "seconds"]
 PAGE = Template(Path(__file__).with_name("page.html").read_text(encoding="utf-8"))
 
@@ -131,8 +132,8 @@ def causes(chapter, result):
         return ["unfinished: a TODO is left"]
     if result["verdict"] == "correct" or not found:
         return []
-    if not (found["fits"] and questions(result)):
-        return ["no single common mistake fits: see what was seen of each"]
+    if not (found["fits"] and questions(result)):  # what has no name may be a mistake of its own
+        return [NAMELESS]
     pages = [
         f"{mistake['slide'] or mistake['section']}; chapters/{CHAPTERS[teaching(chapter, mistake)]}/README.md"
         for mistake in found["mistakes"]
@@ -151,11 +152,12 @@ def teaching(chapter, mistake):
 def summary(rows):
     """What is wrong most often in a class, as lines, each with the first fact about one of these shaders."""
     counts = Counter(cause for row in rows for cause in row["causes"])
+    nameless = counts.pop(NAMELESS, 0)
     facts = {cause: row["facts"].split(" | ")[0] for row in reversed(rows) for cause in row["causes"]}
     return [
         f"{count} of {len(rows)}: {cause}{': ' if facts[cause] else ''}{facts[cause]}"
         for cause, count in counts.most_common(MOST_COMMON)
-    ]
+    ] + [f"{nameless} of {len(rows)}: {NAMELESS}"] * bool(nameless)
 
 
 def write_page(options, rows, path):

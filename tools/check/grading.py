@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from check.expected import DESCRIPTIONS, expected_file
+from includes import shaders_of
 from project import CHAPTERS, ROOT, UserError, read_json, show_progress
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
@@ -25,7 +26,16 @@ SCENES = {
 # Roulette from the first bounce on and with a cap that matters, since otherwise both hardly show. With a lower cap few samples
 # would dominate a picture, since survivors of eight bounces have weight 1/cap^8, and no interval would hold.
 ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight", "1"]
-OPTIONS = {number: ROULETTE if "--roulette-start" in says.get("options", []) else [] for number, says in DESCRIPTIONS.items()}
+# Each thread renders all samples of its pixel where a chapter has a loop of its own over them. Otherwise one sample a thread is all
+# that a small picture needs, and no path follows another.
+ONE_THREAD = ["--max-threads-per-pixel", "1"]
+OPTIONS = {
+    number: [
+        *(ROULETTE if "--roulette-start" in says.get("options", []) else []),
+        *(ONE_THREAD if any(shader.name == "sample_loop.glsl" for shader in shaders_of(number)) else []),
+    ]
+    for number, says in DESCRIPTIONS.items()
+}
 TILE = 16  # pixels
 TILE_FLOOR = 5e-4  # of the mean of the image: see reference_regions()
 FALSE_ALARMS = 0.001  # over all checks of correct shaders
@@ -34,6 +44,7 @@ TOO_MUCH = 1.5  # times the error of a sample or its rays
 # that is never too much.
 LOST_PART, LITTLE = 0.25, 1.1
 RUNS, MOST_RUNS, SEED_STEP = 12, 1000, 10000
+CLOSER_RUNS, CLOSER_SAMPLES = 16, 4  # of a closer look: runs, and times the samples of a run
 NEAR = 1.5  # times the half width of its interval: a mean farther from the reference is rendered again, by chance one of 150
 EARLY_RUNS = 4  # after these a first verdict is worth reporting
 PATIENCE = 10  # a check of RUNS runs may take this many times the limit of a single render
@@ -48,8 +59,9 @@ def stay_in_the_driver(backend):
 
 def first_seed(seed):
     """The seed of the first run of a check with this --seed. Checks with different ones share no render. None uses the seeds from
-    2 * MOST_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the seeds of --seed
-    0, so that a shader which draws random numbers in the same order as the chapter's own is compared render by render."""
+    2 * MOST_RUNS + CLOSER_RUNS + 1 to SEED_STEP, with which the signatures of mistakes were measured. The chapters' levels use the
+    seeds of --seed 0, so that a shader which draws random numbers in the same order as the chapter's own is compared render by render.
+    """
     return seed * SEED_STEP + 1
 
 
@@ -158,26 +170,28 @@ def grade(case, recorded, scenes, is_second_look=False):
     errors = [Series(level["rel_mse"]) for level in (now, recorded)]
     is_paired = len(now["rel_mse"]) > 1 and now["rel_mse"].keys() <= recorded["rel_mse"].keys()
     noise = paired_ratio(*errors) if is_paired else ratio(*errors)
-    rays = now["rays"] / recorded["rays"]
-    # Noise compensated by fewer rays is not a fault, and neither are rays compensated by less noise.
-    if case["invalid_samples"] or any(test["is_biased"] for test in [*image, *tiles]):
-        verdict = "biased"
-    elif noise[1] is not None and noise[1] * min(rays, 1) > most_noise(recorded):
-        verdict = "noisy"
-    else:
-        verdict = "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
     columns = case["width"] // TILE
     tiles = [{"row": i // columns, "column": i % columns, **test} for i, test in enumerate(tiles)]
-    return {
+    result = {
         "scene": case["scene"],
-        "verdict": verdict,
+        "verdict": "biased",
         "invalid_samples": case["invalid_samples"],
         "image": image,
         "tiles": tiles,
         "noise": noise,
         "most_noise": most_noise(recorded),
-        "rays": rays,
+        "rays": now["rays"] / recorded["rays"],
     }
+    is_biased = case["invalid_samples"] or any(test["is_biased"] for test in [*image, *tiles])
+    return result if is_biased else result | {"verdict": verdict_without_bias(result)}
+
+
+def verdict_without_bias(scene):
+    """Noise compensated by fewer rays is not a fault, and neither are rays compensated by less noise."""
+    noise, rays = scene["noise"], scene["rays"]
+    if noise[1] is not None and noise[1] * min(rays, 1) > scene["most_noise"]:
+        return "noisy"
+    return "expensive" if rays * min(noise[1] or noise[0] or 1, 1) > TOO_MUCH else "correct"
 
 
 def read_levels(chapter):
@@ -232,32 +246,35 @@ def doubtful(results):
     )
 
 
-def judge(submission, settings, levels=None, watch=lambda cases: None, ends_early=False):
+def first_verdict(results):
+    return next(word for word in VERDICTS if word in {result["verdict"] for result in results})
+
+
+def judge(submission, settings, levels=None, watch=lambda cases: None, is_enough=lambda results: False):
     """The verdict on a shader and on each scene, and the mean picture of each scene; raises UserError if there is none. What is in doubt
     is rendered again, with other seeds, which decide alone: so a correct shader that was doubted is refused no more often than any other.
-    With `ends_early` it takes EARLY_RUNS alone if a picture is off as a whole in them: experiments should confirm that, for all of so few
-    runs may lack the same bright paths."""
+    It takes EARLY_RUNS alone if what they show of the scenes is enough."""
     levels = levels or read_levels(submission.chapter)
 
     def graded(cases, is_second_look=False):
         return [grade(case, levels[case["scene"]], len(cases), is_second_look) for case in cases]
 
-    def is_enough(cases):
+    def watch_and_end(cases):
         watch(cases)
-        return ends_early and is_sure(graded(cases))
+        return is_enough(graded(cases))
 
     first_seed = settings["first_seed"]
-    cases = render(submission, settings, watch=is_enough)
+    cases = render(submission, settings, watch=watch_and_end)
     seen = {case["scene"]: (case, result) for case, result in zip(cases, graded(cases))}
-    if again := doubtful([result for _, result in seen.values()]):
+    is_early = len(cases[0]["runs"]) < settings["runs"]
+    if again := [] if is_early else doubtful([result for _, result in seen.values()]):
         cases = render(submission, settings | {"first_seed": first_seed + settings["runs"]}, again)
         seen |= {case["scene"]: (case, result) for case, result in zip(cases, graded(cases, is_second_look=True))}
     cases, results = zip(*seen.values())
-    verdict = next(word for word in VERDICTS if word in {result["verdict"] for result in results})
     return {
         "chapter": submission.chapter,
         "file": submission.name,
-        "verdict": verdict,
+        "verdict": first_verdict(results),
         "runs": min(len(case["runs"]) for case in cases),
         "samples": settings["samples"] or SCENES[submission.chapter][0],
         "first_seed": first_seed,
@@ -267,3 +284,24 @@ def judge(submission, settings, levels=None, watch=lambda cases: None, ends_earl
         "diagnosis": None,
         "scenes": list(results),
     }, [case["picture"] for case in cases]
+
+
+def look_closer(submission, settings, result, pictures):
+    """Judges the biased scenes anew, by many more samples, which decide alone: where few paths bring most of the light, all renders may
+    lack the same ones. For shaders that no experiment calls biased. Changes what judge() has returned. A scene that is not biased keeps
+    the noise that it had, since that of points may depend on the number of samples, unless it has even more."""
+    levels = read_levels(submission.chapter)
+    places = {scene["scene"]: i for i, scene in enumerate(result["scenes"]) if scene["verdict"] == "biased"}
+    closer = {
+        "runs": CLOSER_RUNS,
+        "samples": CLOSER_SAMPLES * result["samples"],
+        "first_seed": settings["first_seed"] + 2 * MOST_RUNS,
+    }
+    for case in render(submission, settings | closer, list(places)):
+        place, now = places[case["scene"]], grade(case, levels[case["scene"]], len(places), is_second_look=True)
+        noisier = max(now, result["scenes"][place], key=lambda scene: scene["noise"][1] or 0)
+        now |= {key: noisier[key] for key in ("noise", "rays")}
+        if now["verdict"] != "biased":
+            now["verdict"] = verdict_without_bias(now)
+        result["scenes"][place], pictures[place] = now, case["picture"]
+    result["verdict"] = first_verdict(result["scenes"])

@@ -45,6 +45,8 @@ class Submission:
         whose functions the file all defines, preferably the estimator; or else the one with its name; a new one beside an estimator; or the
         one with most of its functions. Other estimators than the chapter's may have a function or two in common with any."""
         estimator, functions = self.estimator, functions_in(self.file)
+        if not text_of(self.file).strip():
+            raise UserError(f"{self.name}: is empty")
         folder = [estimator, *sorted(set(estimator.parent.glob("*.glsl")) - {estimator})]
         for shader in folder:
             if functions_in(shader) and functions >= functions_in(shader):

@@ -4,7 +4,7 @@ import shutil
 import sys
 import textwrap
 
-from check.grading import early_bias
+from check.grading import TOO_MUCH, early_bias
 from project import CHAPTERS
 
 MOST_QUESTIONS, MOST_FACTS = 2, 5
@@ -43,7 +43,8 @@ def scene_words(scene):
         words.append(f"{scene['invalid_samples']} samples infinite or not a number")
     if scene["verdict"] != "biased":
         least = max(test["detectable"] for test in scene["image"])
-        words.append(f"a bias from {100 * least:.2g} % would have shown")
+        if least < 1:  # few runs of a noisy scene tell nothing
+            words.append(f"a bias from {100 * least:.2g} % would have shown")
         if scene["noise"][0] is not None:
             limit = f", where {scene['most_noise']:.2f} is the limit" if scene["verdict"] == "noisy" else ""
             words.append(
@@ -57,6 +58,9 @@ def scene_words(scene):
 def worst_scene(result):
     """What is wrong in the scene with the verdict, in a few words; experiments may have found what no scene shows."""
     scene = next((scene for scene in result["scenes"] if scene["verdict"] == result["verdict"]), None)
+    if not scene and result["verdict"] == "noisy":
+        subject, noise = result["diagnosis"]["too_noisy"]
+        return noise_words(subject, f"{noise:.2g} times the variance", TOO_MUCH)
     if not scene:
         return "the pictures are right, but not what the experiments show"
     if result["verdict"] == "biased":
@@ -69,10 +73,14 @@ def worst_scene(result):
             return f"{scene['scene']} has negative light: is a cosine below 0?"
         return f"{scene['scene']} is too {'bright' if worst > 0 else 'dark'} (by up to {percent(worst)})"
     if result["verdict"] == "noisy":
-        return f"{scene['scene']} has {scene['noise'][0]:.2f} times the noise of the chapter's own shader"
+        return noise_words(scene["scene"], f"{scene['noise'][0]:.2f} times the noise", scene["most_noise"])
     if result["verdict"] == "expensive":
         return f"{scene['scene']} takes {scene['rays']:.2f} times the rays of the chapter's own shader"
     return f"nothing differs{smallest_bias(result['scenes'])}"
+
+
+def noise_words(what, noise, limit):
+    return f"the mean is right, but {what} has {noise} of the chapter's own shader, and {limit:.2f} is the limit"
 
 
 def smallest_bias(scenes):
@@ -110,6 +118,8 @@ def hint_lines(result):
     if result["unfinished_line"] or result["verdict"] == "correct" or not found:
         return lines
     asked, mistakes = questions(result), found["mistakes"]
+    if result["verdict"] == "noisy" and found["fits"] and asked:  # where the headline is a question
+        lines.append(("seen", worst_scene(result)))
     lines += [("seen", fact["text"]) for fact in found["facts"][:MOST_FACTS]] or [("seen", NOTHING_SEEN)]
     if len(found["facts"]) > MOST_FACTS:
         lines.append(("seen", f"and {len(found['facts']) - MOST_FACTS} more things"))

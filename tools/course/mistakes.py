@@ -2,8 +2,8 @@
 
 A record replaces the text `find`, which must occur exactly once, by `replace`: in a shader of its chapter's folder, in one that these
 include from other chapters, or in `file`. If a chapter can have an earlier chapter's mistake, it has its own record with that name. These
-need to be in one of the records only: the "explanation"; for ./lab check the "hint", and the "slide" or, where the lecture has none, the
-"section" of the chapter's page to read again; the "test" that the mistake turns red.
+need to be in one of the records only: the "explanation"; for ./lab check the "hint" and the "slide" to read again; the "test" that the
+mistake turns red. Where the lecture has no slide, a record names the "section" of its own chapter's page.
 A mistake that leaves the picture right has instead a "question", and under "sanitizer" a scene, and options, with which --sanitize finds it.
 """
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from includes import shaders_of
 from project import CHAPTERS, ROOT, UserError, course, original, read_json, text_of
 
 NO_QUESTION = "Where do the two pictures differ, and which line decides that?"
-SAID_ONCE = ("explanation", "hint", "slide", "section", "test")
+SAID_ONCE = ("explanation", "hint", "slide", "test")
 # In shaders that no chapter teaches.
 ENGINE = ROOT / "tests/mistakes/engine.json"
 
