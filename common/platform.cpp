@@ -103,7 +103,7 @@ bool would_survive(int (*step)()) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    return WIFEXITED(status);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;  // prepare_program() may turn a crash into an exit code
 }
 
 size_t processor_count() {
