@@ -7,11 +7,13 @@ live.PathPanel = (() => {
     const FAR = 1e3;    // where rays end that leave the scene, in distances from the camera
     const BLUE = "#3cc8ff", GREEN = "#78ff78", PINK = "#ff50c8", YELLOW = "#ffdc3c", GREY = "#787878";
 
-    // A number as "%.3g" of C writes it.
+    // A number as "%.3g" of C writes it: halfway between two, it is the one with an even digit.
     function short(x) {
         if (x === 0 || !Number.isFinite(x)) return String(x).toLowerCase().replace("infinity", "inf");
-        const [digits, exponent] = x.toExponential(2).split("e").map(Number);
-        if (exponent >= -4 && exponent < 3) return String(Number(x.toPrecision(3)));
+        const exact = x.toExponential(100), isHalfway = /\.\d[02468]50*e/.test(exact);
+        const rounded = isHalfway ? exact.replace(/50*e/, "e") : x.toExponential(2);
+        const [digits, exponent] = rounded.split("e").map(Number);
+        if (exponent >= -4 && exponent < 3) return String(Number(rounded));
         return `${digits}e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
     }
     const colour = (name, v) => `${name} RGB ${v.map(short).join(" ")}`;
