@@ -83,7 +83,9 @@ void expect_same(const json& page, const PathVertex& vertex) {
     expect_near(page["throughput"], vertex.throughput, "throughput");
     expect_near(page["radiance"], vertex.radiance, "radiance");
     ASSERT_EQ(page["survivalProbability"].is_null(), !vertex.survival_probability);
-    if (vertex.survival_probability) EXPECT_FLOAT_EQ(page["survivalProbability"].get<float>(), *vertex.survival_probability);
+    if (vertex.survival_probability) {
+        EXPECT_FLOAT_EQ(page["survivalProbability"].get<float>(), *vertex.survival_probability);
+    }
     ASSERT_EQ(page["lostRoulettes"].get<std::vector<float>>(), vertex.lost_roulettes);
     ASSERT_EQ(page["lightSamples"].size(), vertex.light_samples.size());
     for (size_t i = 0; i < vertex.light_samples.size(); ++i) expect_same(page["lightSamples"][i], vertex.light_samples[i]);
