@@ -94,7 +94,7 @@ class CheckTest(Checking, ProgramTest):
     def test_the_answer_is_short_and_has_details_on_demand(self):
         (_, short, _), (_, long, _) = self.check(*FEW, self.wrong()), self.check(*FEW, "--details", self.wrong())
         facts = re.findall(r"(?m)^seen +(.*)", short)
-        self.assertTrue(1 <= len(facts) <= 5 and max(map(len, facts)) <= 100, facts)
+        self.assertTrue(1 <= len(facts) <= 5 and not any("…" in fact for fact in facts), facts)
         self.assertNotIn("check_room_2  ", short)
         for words in (
             "check_room_2 +biased: mean ",
