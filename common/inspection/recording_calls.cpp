@@ -71,6 +71,7 @@ class Scanner : ShaderEditor {
         if (is_declaration) {
             const size_t name = skip_space(at_ + first.size());
             variable = word_at(name);
+            if (first == "float" && variable == "flight") has_flight_ = true;
             const size_t after = skip_space(name + variable.size());
             if (after >= text_.size() || text_[after] != '=') return false;
         }
@@ -97,13 +98,14 @@ class Scanner : ShaderEditor {
             return " record_radiance(EVENT_RADIANCE" + starts + expression + ", " + std::to_string(number) + "u);";
         }
         if (variable == "survival_probability" && is_declaration) return " record_survival(survival_probability);";
-        if (variable == "flight" && is_declaration) return " record_flight(flight);";
+        if (name == variable && name == "flight" && has_flight_) return " record_flight(flight);";
         return "";
     }
 
     bool begins_statement_ = false;
     int parentheses_ = 0, braces_ = 0;
-    int radiances_ = 0;  // declared so far
+    int radiances_ = 0;        // declared so far
+    bool has_flight_ = false;  // declared as a float
 };
 
 }  // namespace

@@ -64,6 +64,9 @@ TEST(RecordingCalls, FollowAssignmentsAndDeclarations) {
                 "vec3 throughput = vec3(1.0); record_throughput(EVENT_THROUGHPUT_STARTS, throughput);");
     expect_edit("float survival_probability = 0.5;", "float survival_probability = 0.5; record_survival(survival_probability);");
     expect_edit("float flight = f(path.medium, seed);", "float flight = f(path.medium, seed); record_flight(flight);");
+    expect_edit("float flight = F; if (a) flight = b; else flight = c;",
+                "float flight = F; record_flight(flight); if (a) { flight = b; record_flight(flight); } "
+                "else { flight = c; record_flight(flight); }");
 }
 
 TEST(RecordingCalls, TellTheVariablesNamedRadianceApart) {

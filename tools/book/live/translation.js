@@ -151,11 +151,12 @@ live.Translation = (() => {
             const starts = isDeclaration ? "_STARTS" : "";
             if (place.isEngine || !this.functions.has("record_throughput")) return {};
             if (name === "radiance" && isDeclaration) ++this.radiances;
+            if (first === "float" && second === "flight") this.hasFlight = true;
             const calls = {
                 throughput: `record_throughput(EVENT_THROUGHPUT${starts}, ${value});`,
                 radiance: `record_radiance(EVENT_RADIANCE${starts}, ${value}, ${isMember ? 0 : this.radiances}u);`,
-                ...(isDeclaration &&
-                    {survival_probability: "record_survival(survival_probability);", flight: "record_flight(flight);"})
+                ...(isDeclaration && {survival_probability: "record_survival(survival_probability);"}),
+                ...(this.hasFlight && second !== "." && {flight: "record_flight(flight);"})
             };
             const isKnown = name !== "radiance" || isMember || this.radiances > 0;  // declared by the estimator
             return {call: isKnown && Object.hasOwn(calls, name) ? calls[name] : undefined, isDeclaration};
