@@ -40,19 +40,22 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     Hit hit;
     bool is_hit = trace_ray(path.ray, NO_LIMIT, hit);
     if (!is_hit && path.medium != 0u) return false;  // its mesh is not closed
-    Medium medium = get_medium(path.medium);
-    Segment segment = Segment(path.ray, is_hit ? hit.distance : FARTHEST, path.medium);
-    bool has_angles = STRATEGY != STRATEGY_BOUNCES && samples_angles(medium);
-    if (has_angles && path.path_length < parameters.max_path_length) add_light(path, 1u, sample_segment(segment, seed));
 
     // A free flight along ω_{k-1} ends in a collision, or at the next surface. One that ends within rounding errors of a surface
     // ends there, so that hardly any collision lies behind it.
+    Medium medium = get_medium(path.medium);
     float t_max = is_hit ? (1.0 - 64.0 * ROUNDING) * hit.distance : NO_LIMIT;
     float flight = NO_LIMIT;
     if (has_grid(medium)) flight = track_flight(medium, path.ray, t_max, seed);
     else if (medium.extinction > 0.0) flight = get_flight_depth(get_random_words(seed).x) / medium.extinction;
     bool is_collision = flight < t_max;
-    if (is_collision) path.throughput *= medium.albedo;
+    vec3 weight = is_collision ? medium.albedo : vec3(1.0);
+
+    // Lamps light the whole way, wherever the flight ends.
+    Segment segment = Segment(path.ray, is_hit ? hit.distance : FARTHEST, path.medium);
+    bool has_angles = STRATEGY != STRATEGY_BOUNCES && samples_angles(medium);
+    if (has_angles && path.path_length < parameters.max_path_length) add_light(path, 1u, sample_segment(segment, seed));
+    path.throughput *= weight;
 
     if (!is_hit && !is_collision) {
         float light_density = path.receiver.is_light_sampled ? get_background_density(path.ray.direction) : 0.0;
