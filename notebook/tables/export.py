@@ -36,7 +36,7 @@ DEVICE_TABLES = {
 }
 # Shown wherever times on such a device are compared.
 NO_RAY_TRACING_CORES = """
-> **An NVIDIA H200 has no ray tracing cores.** There the driver, our tree and Mitsuba's OptiX all trace rays in software. GPUs with such
+> **An NVIDIA H200 has no ray tracing cores.** There the driver, our BVH and Mitsuba's OptiX all trace rays in software. GPUs with such
 > cores trace rays several times faster in hardware, and Mitsuba gains from that as well. No ratio measured here holds for them.
 
 """
