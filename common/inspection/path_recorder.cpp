@@ -132,16 +132,17 @@ class PathBuilder {
             return;
         }
         site_ = vertex_at(event.origin);
-        if (site_ < 0) return;
+        is_light_sampled_ = site_ >= 0;
+        if (!is_light_sampled_) return;
         LightSample light{
             .start = event.origin, .direction = glm::normalize(event.direction), .point = {}, .is_visible = event.is_hit == 0};
         if (event.end < no_limit) light.point = event.origin + event.end * event.direction;
         site().light_samples.push_back(light);
-        is_light_sampled_ = true;
     }
 
-    // What follows happens at the origin of the branch's first ray.
+    // What follows happens at the origin of the branch's first ray, and a light sample before it adds nothing there.
     void start_branch() {
+        is_light_sampled_ = false;
         const auto ray = std::find_if(events_.begin() + static_cast<std::ptrdiff_t>(next_), events_.end(), is_ray);
         if (ray != events_.end()) site_ = vertex_at(ray->origin);
     }

@@ -155,8 +155,11 @@ class ShadersInBrowserTest(unittest.TestCase):
             (int(file.parts[-3][:2]), path_of(file), {f"chapters/{file.parts[-3]}/path_trace.glsl": text_of(file)})
             for file in PROJECT.glob("chapters/*/solutions/*.glsl")
         ]
-        exercises = {chapter: live.exercise_of(CHAPTERS[chapter], live.shaders()) for chapter in course()}
-        texts += [(chapter, f"exercise {chapter}", {e["file"]: e["text"]}) for chapter, e in exercises.items() if e]
+        shaders = live.shaders()
+        exercises = {chapter: live.exercise_of(CHAPTERS[chapter], shaders) for chapter in course()}
+        for chapter, piece in ((chapter, piece) for chapter, piece in exercises.items() if piece):
+            text = shaders[piece["file"]].replace(piece["find"], piece["replace"])
+            texts.append((chapter, f"exercise {chapter}", {piece["file"]: text}))
         self.assertEqual(self.errors(texts), {})
 
     def test_names_of_the_engine_may_be_a_students(self):

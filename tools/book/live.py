@@ -287,12 +287,14 @@ def furnace(folder):
 
 
 def exercise_of(chapter, texts):
-    """The file of exercise 1 and its text with the placeholder; none in a student's tree, where that is the file's text."""
+    """The file of exercise 1, and its solution and placeholder; none in a student's tree, where the file has the placeholder."""
     exercise = description(chapter).get("exercise")
     if not exercise:
         return None
     path = f"chapters/{chapter}/{exercise['file']}"
-    return {"file": path, "text": take_out(texts[path], exercise)[0]}
+    text, solution = take_out(texts[path], exercise)
+    begin = texts[path].index(solution)
+    return {"file": path, "find": solution, "replace": text[begin : len(solution) + begin + len(text) - len(texts[path])]}
 
 
 def bugs_of(chapter):
@@ -343,8 +345,14 @@ def write(folder, frames):
     (folder / "data").mkdir(parents=True)
     for name, text in scripts.items():
         (folder / "data" / f"{name}.js").write_text(text, encoding="utf-8")
+    # Later chapters repeat bugs of earlier ones.
+    bugs = list({literal(bug): bug for about in chapters.values() for bug in about["bugs"]}.values())
+    for about in chapters.values():
+        about["bugs"] = [bugs.index(bug) for bug in about["bugs"]]
     (folder / "sources.js").write_text(
-        f"var live = {{data: {{}}}};\nlive.sources = {literal(texts)};\n" f"live.chapters = {literal(chapters)};\n",
+        f"var live = {{data: {{}}}};\nlive.sources = {literal(texts)};\nlive.chapters = {literal(chapters)};\n"
+        f"const everyBug = {literal(bugs)};\n"
+        "for (const about of Object.values(live.chapters)) about.bugs = about.bugs.map(index => everyBug[index]);\n",
         encoding="utf-8",
     )
     for name in [*SCRIPTS, "live.css"]:

@@ -50,7 +50,10 @@ live.Controls = (() => {
             this.compared = element("input", {type: "checkbox", change: restart});
             this.pause = button("Pause", () => frame.setPaused(!this.isPaused));
             const bug = select([["", "none"], ...bugs.map((_, i) => [i, `number ${i + 1}`])], () => frame.plant(bugs[bug.value]));
-            const startExercise = () => editor.replace({...editor.state, [exercise.file]: exercise.text}, exercise.file);
+            const startExercise = () => {
+                const text = live.sources[exercise.file].replace(exercise.find, () => exercise.replace);
+                editor.replace({...editor.state, [exercise.file]: text}, exercise.file);
+            };
             const fillWindow = () => document.fullscreenElement ? document.exitFullscreen() : frame.root.requestFullscreen();
             this.root = element(
                 "div", {class: "live-controls", role: "group", "aria-label": "controls of the picture"},

@@ -118,15 +118,16 @@ live.path = (() => {
                 return;
             }
             this.site = this.vertexAt(origin);
-            if (this.site < 0) return;
+            this.isLightSampled = this.site >= 0;
+            if (!this.isLightSampled) return;
             const point = end < NO_LIMIT ? along(origin, end, direction) : null;
             const light = {start: origin, direction: normalized(direction), point, isVisible, radiance: [0, 0, 0]};
             vertices[this.site].lightSamples.push(light);
-            this.isLightSampled = true;
         }
 
         // What follows happens at the origin of the branch's first ray.
         startBranch() {
+            this.isLightSampled = false;
             const ray = this.events.slice(this.next).find(event => this.isRay(event));
             if (ray) this.site = this.vertexAt(ray.origin);
         }
