@@ -11,8 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from check.expected import DESCRIPTIONS, expected_file
-from includes import shaders_of
-from project import CHAPTERS, ROOT, UserError, read_json, show_progress
+from project import CHAPTERS, ROOT, UserError, description, read_json, show_progress
 from references.images import averaged, find_references, read_reference, read_rgb
 from report.batch import Batch
 from report.measurement import new_case, run_case
@@ -29,10 +28,18 @@ ROULETTE = ["--roulette-start", "1", "--survival-cap", "0.6", "--survival-weight
 # Each thread renders all samples of its pixel where a chapter has a loop of its own over them. Otherwise one sample a thread is all
 # that a small picture needs, and no path follows another.
 ONE_THREAD = ["--max-threads-per-pixel", "1"]
+
+
+def has_sample_loop(folder):
+    """Whether a chapter, or one that it continues, has a loop of its own over the samples."""
+    earlier = description(folder).get("continues")
+    return (ROOT / "chapters" / folder / "sample_loop.glsl").exists() or (earlier is not None and has_sample_loop(earlier))
+
+
 OPTIONS = {
     number: [
         *(ROULETTE if "--roulette-start" in says.get("options", []) else []),
-        *(ONE_THREAD if any(shader.name == "sample_loop.glsl" for shader in shaders_of(number)) else []),
+        *(ONE_THREAD if has_sample_loop(CHAPTERS[number]) else []),
     ]
     for number, says in DESCRIPTIONS.items()
 }
