@@ -6,8 +6,8 @@
 
 Deleted: each statement, factor and addend, each minus and exclamation mark, each function around a value. Inverted: each operator,
 comparison and condition. Replaced: each number and component, some functions by their counterparts, and neighbouring arguments by each
-other. Where threads start paths one after another: each member of a path kept from the last one. Those that do not compile do not count. unchanged.json lists those that change nothing, each with why. All others must be
-found, by ./lab check as a student calls it. With --all-experiments the others are rendered as well, to tell which ones would find what.
+other. Where threads start paths one after another: each member of a path kept from the last one. Those that do not compile do not count.
+unchanged.json lists those that change nothing, each with why. All others must be found, by ./lab check as a student calls it. With --all-experiments the others are rendered as well, to tell which ones would find what.
 
 Writes its record after each variant, and continues with those that are missing there.
 """

@@ -20,15 +20,6 @@ class LiveCameraTest(LivePages, unittest.TestCase):
             f"((frame.controls.{control}.value = '{value}'), frame.controls.{control}.dispatchEvent(new Event('change')), frame.film = null)"
         )
 
-    def place(self, x, y):
-        """A place in the picture, relative to its size, on the screen."""
-        return self.frame(
-            f"(({{left, top, width, height}}) => ({{x: left + {x} * width, y: top + {y} * height}}))(frame.picture.root.getBoundingClientRect())"
-        )
-
-    def mouse(self, kind, x, y):
-        self.browser.call("Input.dispatchMouseEvent", type=kind, button="left", buttons=1, clickCount=1, **self.place(x, y))
-
     def drag(self, *places):
         self.mouse("mousePressed", *places[0])
         for x, y in places[1:]:

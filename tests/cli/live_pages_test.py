@@ -60,6 +60,13 @@ class LivePages(Site):
     def click(self, name):
         self.frame(f"[...frame.root.querySelectorAll('button')].find(button => button.textContent === '{name}').click()")
 
+    def mouse(self, kind, x, y):
+        """Of the left button, at a place relative to the picture's size."""
+        place = self.frame(
+            f"(({{left, top, width, height}}) => ({{x: left + {x} * width, y: top + {y} * height}}))(frame.picture.root.getBoundingClientRect())"
+        )
+        self.browser.call("Input.dispatchMouseEvent", type=kind, button="left", buttons=1, clickCount=1, **place)
+
     def edit(self, old, new):
         """Edits the first file with that text as a reader does."""
         self.frame(

@@ -14,12 +14,8 @@ NUMBER = r"-?\d[\d.e+-]*"
 
 class LivePath(LivePages):
     def click_picture(self, x, y):
-        """At a place relative to the picture's size."""
-        place = self.frame(
-            f"(({{left, top, width, height}}) => ({{x: left + {x} * width, y: top + {y} * height}}))(frame.picture.root.getBoundingClientRect())"
-        )
         for kind in ("mousePressed", "mouseReleased"):
-            self.browser.call("Input.dispatchMouseEvent", type=kind, button="left", buttons=1, clickCount=1, **place)
+            self.mouse(kind, x, y)
         self.wait("frame.picture.path.path", "a path")
 
     def path(self, expression):

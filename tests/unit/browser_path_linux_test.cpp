@@ -1,14 +1,12 @@
 // The path that a page of the book makes of recorded events, in JavaScript, is that of C++: both get the same events.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "files/project_folder.h"
 #include "inspection/path_recorder.h"
+#include "unit/page_answer.h"
 #include "unit/test_files.h"
 
 namespace lab {
@@ -91,19 +89,8 @@ void expect_same(const json& page, const PathVertex& vertex) {
     for (size_t i = 0; i < vertex.light_samples.size(); ++i) expect_same(page["lightSamples"][i], vertex.light_samples[i]);
 }
 
-// What a page makes of these events.
-json paths_of_page(const json& task, const std::filesystem::path& folder) {
-    std::ofstream(folder / "events.json") << task.dump();
-    const std::string root = project_folder().string();
-    const std::string command = "node '" + root + "/tests/browser/path.js' '" + root + "/tools/book/live' < '" +
-                                (folder / "events.json").string() + "' > '" + (folder / "paths.json").string() + "'";
-    if (std::system(command.c_str()) != 0) return {};
-    return json::parse(std::ifstream(folder / "paths.json"));
-}
-
 TEST(BrowserPath, IsThatOfThePrograms) {
-    if (WEXITSTATUS(std::system("node --version > /dev/null 2>&1")) != 0) GTEST_SKIP() << "node is missing";
-    const TemporaryFolder folder;
+    if (!has_node()) GTEST_SKIP() << "node is missing";
     std::mt19937 random(1);
     json task{{"paths", json::array()},
               {"kinds",
@@ -124,7 +111,7 @@ TEST(BrowserPath, IsThatOfThePrograms) {
         task["paths"].push_back(list);
         expected.push_back(path_of(events));
     }
-    const json page = paths_of_page(task, folder.path());
+    const json page = answer_of_page("path", task);
     ASSERT_EQ(page.size(), expected.size());
     for (size_t i = 0; i < expected.size(); ++i) {
         EXPECT_EQ(page[i]["hasThroughput"], expected[i].has_throughput);

@@ -1,15 +1,13 @@
 // The verdict of the book's pages, in JavaScript, is that of C++: both judge the same films.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "files/file.h"
-#include "files/project_folder.h"
 #include "statistics/live_verdict.h"
+#include "unit/page_answer.h"
 #include "unit/test_files.h"
 
 namespace lab {
@@ -66,23 +64,12 @@ json to_json(const FilmImage& film) {
     return {{"width", film.width}, {"height", film.height}, {"samples", film.min_samples()}, {"sums", sums}};
 }
 
-// What a page would say of these films.
-json verdicts_of_page(const json& task, const std::filesystem::path& folder) {
-    std::ofstream(folder / "films.json") << task.dump();
-    const std::string root = project_folder().string();
-    const std::string command = "node '" + root + "/tests/browser/verdict.js' '" + root + "/tools/book/live' < '" +
-                                (folder / "films.json").string() + "' > '" + (folder / "verdicts.json").string() + "'";
-    if (std::system(command.c_str()) != 0) return {};
-    return json::parse(std::ifstream(folder / "verdicts.json"));
-}
-
 void expect_near(const json& page, double expected, const char* what) {
     EXPECT_NEAR(page.get<double>(), expected, 1e-9 * std::max(1.0, std::abs(expected))) << what;
 }
 
 TEST(BrowserVerdict, IsThatOfThePrograms) {
-    if (WEXITSTATUS(std::system("node --version > /dev/null 2>&1")) != 0) GTEST_SKIP() << "node is missing";
-    const TemporaryFolder folder;
+    if (!has_node()) GTEST_SKIP() << "node is missing";
     for (const float bias : {0.0f, 0.02f, 0.3f}) {
         std::mt19937 random(7);
         const Reference reference = noisy_reference(random);
@@ -97,7 +84,7 @@ TEST(BrowserVerdict, IsThatOfThePrograms) {
             expected.push_back(*verdict.verdict());
             texts.push_back(verdict.text());
         }
-        const json page = verdicts_of_page(task, folder.path());
+        const json page = answer_of_page("verdict", task);
         ASSERT_EQ(page.size(), expected.size());
         for (size_t look = 0; look < expected.size(); ++look) {
             EXPECT_EQ(page[look]["text"], texts[look]) << "bias " << bias;

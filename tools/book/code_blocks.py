@@ -58,11 +58,17 @@ def find_once(text, piece, exercise):
     return text.index(piece)
 
 
-def take_out(text, exercise):
-    """The shader with the placeholder instead of the solution, and the solution."""
+def exercise_parts(text, exercise):
+    """The solution as it stands in a shader, and the placeholder that goes there."""
     begin = find_once(text, exercise["first"], exercise)
     end = find_once(text, exercise["last"], exercise) + len(exercise["last"])
     if begin >= end:
         raise UserError(f"stale: {exercise['file']}: {exercise['last']!r} is before {exercise['first']!r}")
     indent = " " * (begin - text.rindex("\n", 0, begin) - 1)
-    return text[:begin] + f"\n{indent}".join(exercise["placeholder"]) + text[end:], text[begin:end]
+    return text[begin:end], f"\n{indent}".join(exercise["placeholder"])
+
+
+def take_out(text, exercise):
+    """The shader with the placeholder instead of the solution, and the solution."""
+    solution, placeholder = exercise_parts(text, exercise)
+    return text.replace(solution, placeholder), solution

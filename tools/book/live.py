@@ -2,8 +2,7 @@
 
 A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
 other pages the marker names the chapter, too, and there may be several scenes: <!-- live: SCENE, SCENE by uniform_sampling -->. The
-frames of a chapter offer the scenes of all pages. <!-- live: PICTURE by
-CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report --> becomes a button that
+frames of a chapter offer the scenes of all pages. <!-- live: PICTURE by CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report --> becomes a button that
 tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
 """
 import base64
@@ -18,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 from pathlib import Path
 
-from book.code_blocks import take_out
+from book.code_blocks import exercise_parts
 from check import facts
 from check.diagnosis import FIRST_SEED
 from check.experiments import SIZE, experiments_of, known_sights, write_scene
@@ -292,9 +291,8 @@ def exercise_of(chapter, texts):
     if not exercise:
         return None
     path = f"chapters/{chapter}/{exercise['file']}"
-    text, solution = take_out(texts[path], exercise)
-    begin = texts[path].index(solution)
-    return {"file": path, "find": solution, "replace": text[begin : len(solution) + begin + len(text) - len(texts[path])]}
+    solution, placeholder = exercise_parts(texts[path], exercise)
+    return {"file": path, "find": solution, "replace": placeholder}
 
 
 def bugs_of(chapter):

@@ -9,6 +9,7 @@ live.path = (() => {
 
     const difference = (a, b) => a.map((x, i) => x - b[i]);
     const along = (origin, t, direction) => origin.map((x, i) => x + t * direction[i]);
+    const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);
     const distance = (a, b) => Math.hypot(...difference(a, b));
     const normalized = a => a.map(x => x / Math.hypot(...a));
 
@@ -197,8 +198,7 @@ live.path = (() => {
 
     // The image position of a point, as shaders/world/camera.glsl has it; null if it is not in front of the camera.
     function project({position, forward, right, imageUp}, point) {
-        const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0), toPoint = difference(point, position);
-        const depth = dot(toPoint, forward);
+        const toPoint = difference(point, position), depth = dot(toPoint, forward);
         if (!(depth > 0)) return null;
         const part = axis => dot(toPoint, axis) / dot(axis, axis) / depth;
         return [0.5 + 0.5 * part(right), 0.5 - 0.5 * part(imageUp)];
@@ -206,7 +206,7 @@ live.path = (() => {
 
     // The end points of the part of a segment that is in front of the camera, or null.
     function projectSegment(camera, from, to) {
-        const depth = point => difference(point, camera.position).reduce((sum, x, i) => sum + x * camera.forward[i], 0);
+        const depth = point => dot(difference(point, camera.position), camera.forward);
         const depths = [depth(from), depth(to)], nearest = 1e-3 * Math.max(...depths);
         if (!(nearest > 0)) return null;
         const part = (nearest - depths[0]) / (depths[1] - depths[0]), cut = along(from, part, difference(to, from));
@@ -214,5 +214,5 @@ live.path = (() => {
         return ends.every(end => end) ? ends : null;
     }
 
-    return {PathBuilder, record, project, projectSegment};
+    return {PathBuilder, record, project, projectSegment, along, distance};
 })();

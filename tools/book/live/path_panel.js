@@ -2,7 +2,7 @@
 "use strict";
 
 live.PathPanel = (() => {
-    const {element} = live, {record, project, projectSegment} = live.path;
+    const {element} = live, {record, project, projectSegment, along, distance} = live.path;
     const WIDTH = 400;  // of the drawing, in units of its lines
     const FAR = 1e3;    // where rays end that leave the scene, in distances from the camera
     const BLUE = "#3cc8ff", GREEN = "#78ff78", PINK = "#ff50c8", YELLOW = "#ffdc3c", GREY = "#787878";
@@ -52,10 +52,7 @@ live.PathPanel = (() => {
             const [[x1, y1], [x2, y2]] = ends.map(at);
             parts.push(`<line x1="${x1}" y1="${y1}" x2="${x2}" y2="${y2}" stroke="${stroke}" stroke-width="${width}"/>`);
         };
-        const farAway = (start, direction) => {
-            const far = FAR * Math.hypot(...start.map((x, i) => x - camera.position[i]));
-            return start.map((x, i) => x + far * direction[i]);
-        };
+        const farAway = (start, direction) => along(start, FAR * distance(start, camera.position), direction);
         for (const {start, point, direction, isVisible} of vertices.flatMap(vertex => vertex.lightSamples))
             line(start, point ?? farAway(start, direction), isVisible ? YELLOW : GREY, 1);
         for (const vertex of vertices.filter(({parent}) => parent >= 0)) {

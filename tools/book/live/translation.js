@@ -14,7 +14,8 @@ live.Translation = (() => {
     // Follows the statements of a program and what they declare, so that a name is rewritten only where it means the engine's.
     return class Translation {
         constructor(tokens, layout, textures) {
-            Object.assign(this, {tokens, layout, textures, at: 0, result: [], radiances: 0, loops: [], functions: new Map()});
+            Object.assign(this, {tokens, layout, textures, at: 0, result: [], radiances: 0, hasFlight: false});
+            Object.assign(this, {loops: [], functions: new Map()});
             // From the outermost: what the engine's names mean, and nothing for names of others.
             this.scopes = [new Map(MISSING.map(name => [name, {other: `web_${name}`}])), new Map()];
         }
