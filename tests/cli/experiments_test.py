@@ -131,6 +131,19 @@ class ExperimentsTest(unittest.TestCase):
             magic, _, x, y, z, channels, *_, first, second = struct.unpack("<4s5i6f2f", (Path(folder) / "smoky.vol").read_bytes())
             self.assertEqual((x, y, z, channels, first, second), (1, 1, 2, 1, 0.5, 10))
 
+    def test_a_scene_may_have_a_light_probe_of_its_own_and_a_body_with_a_medium(self):
+        medium = {"extinction": 1, "albedo": 0.5, "boundary": "open"}
+        pieces = {"fog bank": {"box": [1, 1, 1], "medium": medium}, "lamp": {"centre": [0, 2, 0], "faces": [0, -1, 0], "size": 1}}
+        with tempfile.TemporaryDirectory() as folder:
+            file = write_scene(pieces | {"background": {"light_probe": [4, 0.5]}}, Path(folder), "foggy")
+            scene = json.loads(file.read_text(encoding="utf-8"))
+            header, _, pixels = Path(scene["background"]["light_probe"]).read_bytes().partition(b"+X 4\n")
+            faces = [(Path(folder) / mesh["file"]).read_text(encoding="utf-8").count("f ") for mesh in scene["meshes"]]
+        self.assertEqual([mesh.get("medium") for mesh in scene["meshes"]], [None, medium])
+        self.assertEqual(faces, [1, 6])
+        self.assertIn(b"-Y 2", header)
+        self.assertEqual([128 * 2.0 ** (pixels[texel + 3] - 136) for texel in (0, 16)], [4, 0.5])
+
     def test_where_a_chapter_has_a_loop_over_samples_each_thread_takes_all_of_a_pixel(self):
         self.assertEqual(
             [chapter for chapter in course() if "--max-threads-per-pixel 1" in " ".join(OPTIONS[chapter])],

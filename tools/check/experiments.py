@@ -177,12 +177,25 @@ def grid_along_z(densities):
     return header + np.array(densities, "<f4").tobytes()
 
 
-def write_scene(scene, folder, name):
-    """Writes a scene and its mesh; returns the scene's file."""
+def light_probe(rows):
+    """A picture of all directions with one grey value, a power of two, for each row, from top to bottom."""
+    columns = 2 * len(rows)
+    pixels = [bytes([128, 128, 128, 129 + int(math.log2(value))]) * columns for value in rows]
+    return f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {len(rows)} +X {columns}\n".encode() + b"".join(pixels)
+
+
+def file_of(says, assets, write, file):
+    """An asset that an experiment names, or else a file of its own."""
+    if isinstance(says, str):
+        return str(ROOT / "assets" / assets / says)
+    file.write_bytes(write(says))
+    return str(file)
+
+
+def write_mesh(pieces, folder, name):
+    """Writes pieces of a scene as a mesh; returns the name of its file."""
     vertices, normals, faces, materials = [], [], [], []
-    for index, (key, says) in enumerate(scene.items()):
-        if key in ("camera", "background", *OF_THE_SCENE):
-            continue
+    for index, says in enumerate(pieces):
         materials += [
             f"newmtl m{index}",
             f"Kd {colour(0 if 'glass' in says else says.get('albedo', 0))}",
@@ -204,25 +217,32 @@ def write_scene(scene, folder, name):
             vertices += [f"v {p[0]:.9g} {p[1]:.9g} {p[2]:.9g}" for p in face]
     (folder / f"{name}.mtl").write_text("\n".join(materials) + "\n")
     (folder / f"{name}.obj").write_text("\n".join([f"mtllib {name}.mtl", *vertices, *normals, *faces]) + "\n")
+    return f"{name}.obj"
+
+
+def write_scene(scene, folder, name):
+    """Writes a scene and its meshes, one of them for each piece with a medium; returns the scene's file."""
+    pieces = {key: says for key, says in scene.items() if key not in ("camera", "background", *OF_THE_SCENE)}
+    bodies = {key: says for key, says in pieces.items() if "medium" in says}
+    meshes = [{"file": write_mesh([says for key, says in pieces.items() if key not in bodies], folder, name)}] + [
+        {"file": write_mesh([says], folder, f"{name}_{key}"), "medium": says["medium"]} for key, says in bodies.items()
+    ]
     camera = CAMERA | scene.get("camera", {})
     up = [0, 1, 0] if camera["from"][0] != camera["to"][0] or camera["from"][2] != camera["to"][2] else [0, 0, 1]
     background = scene.get("background", 0)
     if isinstance(background, dict):
-        background = background | {"light_probe": str(ROOT / "assets/light_probes" / background["light_probe"])}
+        probe = file_of(background["light_probe"], "light_probes", light_probe, folder / f"{name}.hdr")
+        background = background | {"light_probe": probe}
     others = {key: scene[key] for key in OF_THE_SCENE if key in scene}
     if "density" in others.get("fog", {}):
-        density = others["fog"]["density"]
-        if isinstance(density, str):
-            grid = ROOT / "assets/volumes" / density
-        else:
-            (grid := folder / f"{name}.vol").write_bytes(grid_along_z(density))
-        others["fog"] = others["fog"] | {"density": str(grid)}
+        grid = file_of(others["fog"]["density"], "volumes", grid_along_z, folder / f"{name}.vol")
+        others["fog"] = others["fog"] | {"density": grid}
     file = folder / f"{name}.json"
     file.write_text(
         json.dumps(
             {
                 "description": "An experiment of ./lab check",
-                "meshes": [{"file": f"{name}.obj"}],
+                "meshes": meshes,
                 **others,
                 "camera": {"position": camera["from"], "target": camera["to"], "up": up, "vertical_fov": camera["fov"]},
                 "background": background if isinstance(background, dict) else {"radiance": [background] * 3},
