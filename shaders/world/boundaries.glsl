@@ -13,7 +13,8 @@ Ray get_ray_behind(Hit hit, vec3 direction) { return get_ray_from_surface(get_sh
 // The sides of one boundary, as if no other body overlapped with its body.
 Sides get_sides_of(Boundary boundary, Hit hit, vec3 ray_direction) {
     bool is_front = dot(get_surface_point(hit).geometric_normal, ray_direction) < 0.0;
-    return is_front ? Sides(boundary.before, boundary.behind) : Sides(boundary.behind, boundary.before);
+    if (is_front) return Sides(boundary.before, boundary.behind);
+    return Sides(boundary.behind, boundary.before);
 }
 #endif
 

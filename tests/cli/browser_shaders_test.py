@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tools_path import PROJECT, TOOLS  # first: it finds the others
 from book import live
+from browser import CHROMIUM, Browser
 from course.mistakes import complete, plant, records, shader_of
 from includes import continued, shaders_of
 from project import CHAPTERS, course, read_json, text_of
@@ -46,6 +47,13 @@ FEATURES["everything"] = [
     *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)}),
 ]
 NOTEBOOK = PROJECT / "notebook"
+# What a browser has against a fragment shader.
+COMPILE = """(text => {
+    const gl = document.createElement("canvas").getContext("webgl2"), shader = gl.createShader(gl.FRAGMENT_SHADER);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    return gl.getShaderInfoLog(shader);
+})(%s)"""
 
 
 def path_of(file):
@@ -146,6 +154,16 @@ class ShadersInBrowserTest(unittest.TestCase):
 
     def test_every_chapter_compiles(self):
         self.assertEqual(self.errors((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), {})
+
+    @unittest.skipUnless(CHROMIUM, "needs Chromium, which ./lab test installs")
+    def test_chromium_compiles_every_chapter(self):
+        """It forbids more than the language does, such as `?:` between structures."""
+        with tempfile.TemporaryDirectory() as folder, Browser() as browser:
+            jobs = {Path(folder) / f"{name}.frag": (chapter, name, {}, "everything") for chapter, name in CHAPTERS.items()}
+            self.translate(jobs)
+            for file, (_, name, *_) in jobs.items():
+                with self.subTest(chapter=name):
+                    self.assertEqual(browser.evaluate(COMPILE % json.dumps(file.read_text(encoding="utf-8"))), "")
 
     def test_the_recorder_of_every_chapter_compiles(self):
         self.assertEqual(self.errors(((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), is_recorder=True), {})

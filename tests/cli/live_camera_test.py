@@ -7,6 +7,7 @@ from pathlib import Path
 
 from live_pages_test import LivePages  # first: it finds the others
 import numpy as np
+from docs import first_steps
 from image_files import Exr
 from program import CHAPTER
 
@@ -95,7 +96,7 @@ class LiveCameraTest(LivePages, unittest.TestCase):
         self.end_pictures_after(SAMPLES)
         self.choose("sky", "0.5,1,2")
         self.assert_same_picture("cornell_box", "--background=0.5,1,2")
-        self.assertEqual(self.verdict(), "no verdict: the background is another one")
+        self.assertEqual(self.verdict(), "no verdict: the background is not the scene's")
         self.frame(
             "(frame.controls.sky.value = '1,2', frame.controls.sky.dispatchEvent(new Event('change')), frame.controls.sky.blur())"
         )
@@ -119,6 +120,14 @@ class LiveCameraTest(LivePages, unittest.TestCase):
         self.assertEqual(self.verdict(), "no verdict: this scene has no reference")
         mean = self.frame("frame.film.sums.reduce((sum, x) => sum + x, 0) / frame.film.sums.length / frame.film.samples")
         self.assertAlmostEqual(mean, 2 - 0.5**6, delta=0.05)
+        self.assert_no_complaints()
+
+    def test_first_steps_put_their_shaders_into_the_frame(self):
+        self.browser.visit((self.site / "docs/first_steps.html").as_uri())
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.live-block').length"), 8)
+        self.browser.evaluate("document.querySelector('.live-block').click()")
+        self.wait("frame.verdict?.textContent === 'no verdict: the shader traces no ray'", "a picture")
+        self.assertEqual(self.frame("frame.editor.field.value"), first_steps.shaders(first_steps.PAGE.read_text(encoding="utf-8"))["1"])
         self.assert_no_complaints()
 
 

@@ -250,6 +250,13 @@ class LivePages_all(LivePages, unittest.TestCase):
         self.assertIn("Correct on all scenes", text)
         self.assertEqual(facts, [])
 
+    def test_the_check_says_what_only_experiments_show(self):
+        self.start(3)
+        self.edit("dot(y.normal, -omega)", "abs(dot(y.normal, -omega))")
+        text, facts = self.check()
+        self.assertIn("Biased: the scenes do not show it, but experiments do.", text)
+        self.assertTrue(any("two lamps" in fact for fact in facts), facts)
+
     def test_the_check_says_what_is_wrong(self):
         self.start(3)
         self.edit("throughput *= PI * get_brdf(s, omega);", "throughput *= 2.0 * PI * get_brdf(s, omega);")

@@ -66,7 +66,7 @@ TEST(SceneReference, IsThatOfTheSameImageOnly) {
     EXPECT_EQ(why_not(scene, changed), "the camera has changed");
     changed = good;
     changed.background = vec3(1);
-    EXPECT_EQ(why_not(scene, changed), "the background is another one");
+    EXPECT_EQ(why_not(scene, changed), "the background is not the scene's");
     changed = good;
     changed.only_path_length = 6;
     EXPECT_EQ(why_not(scene, changed), "the picture shows a single path length");

@@ -102,7 +102,7 @@ def with_frames(text, path):
 
     def frame(marker):
         what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
-        bug = f' data-bug="{marker[3]}" data-picture="{marker[1]}"' if marker[3] else ""
+        bug = f' data-bug="{marker[3]}" data-picture="{marker[1]}"' if marker[3] else " data-steps" if marker[2] else ""
         return (
             f'<div class="live" data-chapter="{what}" data-folder="{folder}"{bug}>'
             f"<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>\n"

@@ -87,12 +87,20 @@ live.check = (() => {
         const headline =
             isBiased ? "Biased: the estimator is wrong on a scene." : "Correct on all scenes, as far as these samples tell.";
         tell(headline, " The experiments follow …");
-        const facts = await factsOf(frame);
+        let facts;
+        try {
+            facts = await factsOf(frame);
+        } catch (error) {
+            tell(headline, " The experiments could not be rendered.");
+            throw error;
+        }
         if (!facts) return;
         const wrong = facts.filter(({isRight}) => !isRight);
         const subjects = those => [...new Set(those.map(({experiment}) => experiment.subject))];
         const right = subjects(facts.filter(({isRight}) => isRight)).filter(subject => !subjects(wrong).includes(subject));
-        tell(headline, ` ${wrong.length} of ${facts.length} experiments show something wrong${wrong.length ? ":" : "."}`);
+        tell(
+            isBiased || !wrong.length ? headline : "Biased: the scenes do not show it, but experiments do.",
+            ` ${wrong.length} of ${facts.length} experiments show something wrong${wrong.length ? ":" : "."}`);
         frame.results.append(element("ul", {class: "live-facts"}, ...wrong.map(({sentence}) => element("li", {}, sentence))));
         if (wrong.length && right.length) frame.results.append(element("p", {}, `Right: ${right.join("; ")}.`));
         const more = "./lab check says more: laws that a mistake follows, how noisy the estimator is, and what to look at next.";

@@ -17,7 +17,10 @@ live.Controls = (() => {
     const label = (text, ...parts) => element("label", {}, text, ...parts);
     const select = (options, change) =>
         element("select", {change}, ...options.map(([value, text]) => element("option", {value}, text)));
-    const lengthText = name => `${name.replace(/_\d+$/, "").replaceAll("_", " ")}, up to ${name.replace(/.*_/, "")} bounces`;
+    const lengthText = name => {
+        const [, scene, bounces] = /^(.*)_(\d+)$/.exec(name);
+        return `${scene.replaceAll("_", " ")}, up to ${bounces} bounce${bounces === "1" ? "" : "s"}`;
+    };
 
     return class Controls {
         constructor(frame) {
@@ -53,6 +56,7 @@ live.Controls = (() => {
             const startExercise = () => {
                 const text = live.sources[exercise.file].replace(exercise.find, () => exercise.replace);
                 editor.replace({...editor.state, [exercise.file]: text}, exercise.file);
+                editor.selectTodo();
             };
             const fillWindow = () => document.fullscreenElement ? document.exitFullscreen() : frame.root.requestFullscreen();
             this.root = element(

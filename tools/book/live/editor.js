@@ -78,7 +78,7 @@ live.Editor = (() => {
             // Texts that were replaced, the latest last.
             this.kept = JSON.parse((keepsTexts ? stored(this.keptName) : null) ?? "[]");
             this.root = element("div", {class: "live-editor"}, this.tabs, ...Object.values(this.fields), this.error);
-            this.open(this.files[0]);
+            this.open(this.fileWithTodo ?? this.files[0]);
             addEventListener("storage", event => {
                 if (this.files.some(file => keyOf(file) === event.key))
                     say("Another tab has changed this text: reload the page to see it.");
@@ -95,6 +95,8 @@ live.Editor = (() => {
         get sources() { return {...live.sources, ...this.texts}; }
         get edited() { return this.files.filter(file => this.texts[file] !== live.sources[file]); }
         get tooLong() { return this.files.find(file => this.texts[file].length > LONGEST); }
+
+        get fileWithTodo() { return this.files.find(file => this.texts[file].includes("TODO")); }
 
         get field() { return this.fields[this.file]; }
         get keptName() { return `replaced texts of ${this.chapter}`; }
@@ -179,6 +181,13 @@ live.Editor = (() => {
             this.field.focus();
             this.field.setSelectionRange(start, start + (lines[line - 1]?.length ?? 0));
             this.field.scrollTop = this.field.scrollHeight * Math.max(0, line - 6) / lines.length;
+        }
+
+        // Goes to what an exercise leaves to the reader.
+        selectTodo() {
+            const file = this.fileWithTodo;
+            if (file) this.select(file, this.texts[file].split("TODO")[0].split("\n").length);
+            this.field.scrollIntoView({block: "nearest"});
         }
 
         download() {

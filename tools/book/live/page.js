@@ -17,7 +17,8 @@ live.page = (() => {
             const name = this.bug ? "Find this bug here" : "Render this chapter here", click = () => this.startByHand();
             const words = [
                 "It runs in your browser: edit the shader and see whether the picture is still right. Nothing is sent anywhere. ",
-                "The pictures are noisy at first, and the fan may start."
+                "The pictures are noisy at first, and the fan may start. Here an exercise is done when “Check” finds nothing wrong; ",
+                "what says “./lab” needs the programs."
             ];
             root.append(element("button", {type: "button", class: "live-start", click}, name), element("p", {}, ...words));
         }
@@ -83,8 +84,7 @@ live.page = (() => {
         showEdits() {
             const names = this.editor.edited.map(file => {
                 const [, folder, name] = /^chapters\/([^/]*)\/(.*)$/.exec(file);
-                const more = folder === this.chapter ? "" : ", which that chapter's page has, too";
-                return `${name} of chapter ${parseInt(folder)}${more}`;
+                return `${name} of chapter ${parseInt(folder)}${folder === this.chapter ? "" : " (on its page, too)"}`;
             });
             this.edits.hidden = !names.length;
             this.edits.textContent = `Changed by you: ${names.join("; ")}. “Original text” undoes it.`;
@@ -218,12 +218,27 @@ live.page = (() => {
         }
     }
 
+    // Under each block that is a whole estimator, a button that puts it into a frame.
+    function offerBlocks(frame) {
+        for (const block of document.querySelectorAll("pre")) {
+            const text = block.textContent;
+            if (!text.startsWith("vec3 path_trace(")) continue;
+            const click = async () => {
+                if (!frame.editor) await frame.start();
+                frame.editor.replace({[`chapters/${frame.chapter}/path_trace.glsl`]: text});
+                frame.root.scrollIntoView();
+            };
+            block.after(element("button", {type: "button", class: "live-block", click}, "Put this into the frame"));
+        }
+    }
+
     function init() {
         for (const root of document.querySelectorAll("div.live")) {
             root.replaceChildren();
             if (root.dataset.chapter === "report") root.report = new live.Report(root, Frame);
             if (!(root.dataset.chapter in live.chapters)) continue;
             root.frame = new Frame(root, !root.dataset.bug);
+            if ("steps" in root.dataset) offerBlocks(root.frame);
             new IntersectionObserver(entries => {
                 root.frame.isVisible = entries.at(-1).isIntersecting;
             }).observe(root);

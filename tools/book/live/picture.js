@@ -8,7 +8,7 @@ live.Picture = (() => {
     const DIFFERENCES = {
         max_path_length: "there is no reference for this path length",
         camera: "the camera has changed",
-        background: "the background is another one"
+        background: "the background is not the scene's"
     };
     const TURNS = 65536;  // that the loops of a sample may take if paths are short, as in shaders/engine/limited_loops.glsl
 
