@@ -127,7 +127,9 @@ class LiveCameraTest(LivePages, unittest.TestCase):
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('.live-block').length"), 8)
         self.browser.evaluate("document.querySelector('.live-block').click()")
         self.wait("frame.verdict?.textContent === 'no verdict: the shader traces no ray'", "a picture")
-        self.assertEqual(self.frame("frame.editor.field.value"), first_steps.shaders(first_steps.PAGE.read_text(encoding="utf-8"))["1"])
+        self.assertEqual(
+            self.frame("frame.editor.field.value"), first_steps.shaders(first_steps.PAGE.read_text(encoding="utf-8"))["1"]
+        )
         self.assert_no_complaints()
 
 
