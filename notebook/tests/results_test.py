@@ -4,10 +4,12 @@ import re
 import sys
 import tempfile
 import unittest
+from contextlib import ExitStack
 from pathlib import Path
 from unittest import mock
 
 import paths  # noqa: F401  (first: it finds the others)
+import includes
 import project
 from docs import page_plots
 from docs.tables import DOCS, PAGES
@@ -295,9 +297,9 @@ class AgesTest(unittest.TestCase):
     RECORD = '{"program": "05_russian_roulette"}'
 
     def test_comments_and_other_chapters_do_not_count(self):
-        with tempfile.TemporaryDirectory() as folder, mock.patch.object(digests, "ROOT", Path(folder)), mock.patch.object(
-            project, "ROOT", Path(folder)
-        ):
+        with tempfile.TemporaryDirectory() as folder, ExitStack() as patches:
+            for module in (digests, includes, project):
+                patches.enter_context(mock.patch.object(module, "ROOT", Path(folder)))
             files = {
                 name: Path(folder) / name
                 for name in (
@@ -310,6 +312,7 @@ class AgesTest(unittest.TestCase):
             for file in files.values():
                 file.parent.mkdir(parents=True, exist_ok=True)
                 file.write_text('{"options": ["a"], "measure": {}}' if file.suffix == ".json" else "a = 1;  // one\n")
+            (Path(folder) / "shaders/replaceable.json").write_text("[]")
             before = sources.measured(self.RECORD)
             self.assertEqual(list(before), ["renderer", "russian_roulette"])
             record = {"measured": before}
