@@ -34,6 +34,7 @@ QUESTIONS = {  # name: module
     "sizes": "tables.sizes",
     "submissions": "learning.submissions",
     "variants": "learning.verify_variants",
+    "waits": "measure.waits",
 }
 
 

@@ -38,7 +38,7 @@ std::string difference_from_file(const Scene& scene, const RenderParameters& par
     const RenderParameters of_file = default_parameters(scene, parameters.image_size);
     if (!are_equal(parameters.camera, of_file.camera)) return "the camera has changed";
     if (parameters.background != of_file.background || parameters.probe_rotation != of_file.probe_rotation)
-        return "the background is another one";
+        return "the background is not the scene's";
     if (scene.has_added_lobes) return "the specular lobe is another one";
     if (parameters.only_path_length >= 0) return "the picture shows a single path length";
     return "";

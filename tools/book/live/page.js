@@ -136,6 +136,11 @@ live.page = (() => {
             const {picture} = this;
             this.forgetFilm();
             this.results.replaceChildren();
+            if (this.editor.error.hasChildNodes()) {  // which may be mended
+                this.editor.showError("");
+                this.verdict.className = "live-verdict";
+                this.verdict.textContent = "compiling …";
+            }
             try {
                 const chosen = this.about.pictures[this.controls.scene.value];
                 await picture.render(chosen, () => live.Picture.MOST_SAMPLES, (...latest) => this.show(...latest));
