@@ -1,6 +1,6 @@
 """Where do the minutes of ./lab test go? Lists its longest tests and build steps, from what ctest and ninja have noted of the last runs.
 
-Each row is the wall time of one test or step, whatever ran beside it: the sum is the time on one core, and twice what two idle cores need.
+Each row is the wall time of one test or step while others ran beside it, so the sums say where the time goes, not how long you wait.
 """
 from collections import defaultdict
 from pathlib import Path

@@ -1,9 +1,11 @@
 """The lab in the browser: what the pages of a book need to render its chapters.
 
 A line <!-- live: SCENE --> on a chapter's page becomes a frame in which the chapter renders this scene or those of its check. On
-other pages the marker names the chapter, too, and there may be several scenes: <!-- live: SCENE, SCENE by uniform_sampling -->. The
-frames of a chapter offer the scenes of all pages. <!-- live: PICTURE by CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report --> becomes a button that
-tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and live/*.js are the same for all pages.
+other pages the marker names the chapter, too, and there may be several scenes: <!-- live: SCENE, SCENE by uniform_sampling -->; there a
+button under each whole estimator puts it into the frame. The frames of a chapter offer the scenes of all pages.
+<!-- live: PICTURE by CHAPTER bug NUMBER --> starts from a mistake of ./lab bug, in one of the chapter's pictures. <!-- live: report -->
+becomes a button that tries a few chapters and tells how a device did. The program dump_arrays writes a scene's arrays; the shaders and
+live/*.js are the same for all pages.
 """
 import base64
 import gzip
@@ -102,9 +104,13 @@ def with_frames(text, path):
 
     def frame(marker):
         what = REPORT if marker[1] == REPORT else chapter_of(marker, path)
-        bug = f' data-bug="{marker[3]}" data-picture="{marker[1]}"' if marker[3] else " data-steps" if marker[2] else ""
+        more = ""
+        if marker[3]:
+            more = f' data-bug="{marker[3]}" data-picture="{marker[1]}"'
+        elif marker[2]:
+            more = " data-steps"  # the page's blocks of code can be put into the frame
         return (
-            f'<div class="live" data-chapter="{what}" data-folder="{folder}"{bug}>'
+            f'<div class="live" data-chapter="{what}" data-folder="{folder}"{more}>'
             f"<noscript>Here the chapter renders in your browser, if it may run scripts.</noscript></div>\n"
         )
 
