@@ -55,6 +55,7 @@ SHARED_CONSTANT BINDING_LIGHT_LEAVES = 28u;
 SHARED_CONSTANT BINDING_LIGHT_PLACES = 29u;
 SHARED_CONSTANT BINDING_BOUNDARY_PLACES = 30u;
 SHARED_CONSTANT BINDING_OVERLAPS = 31u;
+SHARED_CONSTANT BINDING_SPLATS = 34u;  // 32 and 33 are those of world_triangles.h
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -204,6 +205,7 @@ struct RenderParameters {
     uint roulette_start;    // Russian roulette begins at this bounce, from chapter 5
     float survival_cap;     // largest survival probability, in (0,1], from chapter 5
     float survival_weight;  // throughput that survivors carry, in (0,1], from chapter 5
+    float splat_unit;       // of radiance that light paths add to pixels, from chapter 15; 0 without light paths
 };
 
 // Brings the pixels of blocks first_block, first_block + 1, ... up to target_samples samples (counted from first_sample), so that
@@ -227,6 +229,10 @@ struct FilmPixel {
     uint invalid_count;  // samples that were infinite or not a number; they add 0
 };
 
+// Light that light paths send to a pixel, with SPLATS: for each of its two halves and each channel a number of 64 bits, the low word
+// first, that counts splat_units. Sums of integers do not depend on the order in which threads add.
+SHARED_CONSTANT SPLAT_WORDS = 12u;
+
 // How shaders/engine/display.comp maps radiance to the screen.
 struct DisplayParameters {
     uvec2 film_size;          // pixels in use
@@ -236,6 +242,7 @@ struct DisplayParameters {
     float scale;              // of radiance
     uint is_srgb;             // 1: encode with the sRGB curve
     uint divides_by_largest;  // 1: divide by the largest value, 2: only look for it
+    float splat_unit;         // see SPLAT_WORDS
 };
 
 #ifdef __cplusplus

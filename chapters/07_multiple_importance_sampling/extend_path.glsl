@@ -36,7 +36,7 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     float light_density = 0.0;
     if (path.receiver.is_light_sampled)
         light_density = to_solid_angle(get_light_density(path.receiver, s), hit.distance, cos_light);
-    if (is_counted(path.path_length))
+    if (is_counted(path.path_length) && counts_lamps(path.receiver))
         path.radiance += path.radiance_scale * path.throughput *
                          get_bounce_part(light_density, path.bounce_density) * s.emission;
     if (path.path_length == parameters.max_path_length || !is_above_surface(s, s.out_direction)) return false;

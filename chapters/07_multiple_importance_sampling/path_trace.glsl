@@ -11,6 +11,7 @@
 #include "06_dielectrics/dielectric.glsl"
 #include "sample_bsdf.glsl"
 #include "choose_light.glsl"
+#include "partition.glsl"
 #include "weights.glsl"
 
 // Light samples go to the light triangles. The background is left to bounces.

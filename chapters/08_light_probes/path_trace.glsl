@@ -8,6 +8,7 @@
 #include "06_dielectrics/dielectric.glsl"
 #include "sample_bsdf.glsl"
 #include "choose_light.glsl"
+#include "partition.glsl"
 #include "07_multiple_importance_sampling/weights.glsl"
 #include "light_probe_sampling.glsl"
 #include "extend_path.glsl"

@@ -103,7 +103,7 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "continues", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length",
-                           "dielectrics", "microfacets", "lens", "media", "light_tree", "low_discrepancy", "options", "choices",
+                           "dielectrics", "microfacets", "lens", "media", "light_tree", "light_paths", "low_discrepancy", "options", "choices",
                            "check", "exercise", "tests", "measure"});
     // The last four are for others: tools/check/grading.py, tools/course/handout.py, tests/support/chapters.cpp,
     // tools/report/studies.py.
@@ -121,7 +121,8 @@ Chapter load_chapter(const std::string& name) {
                         .microfacets = root.boolean("microfacets").value_or(false),
                         .lens = root.boolean("lens").value_or(false),
                         .media = root.boolean("media").value_or(false),
-                        .light_tree = root.boolean("light_tree").value_or(false)},
+                        .light_tree = root.boolean("light_tree").value_or(false),
+                        .light_paths = root.boolean("light_paths").value_or(false)},
             .low_discrepancy = root.boolean("low_discrepancy").value_or(false),
             .options = read_options(root),
             .choices = read_choices(root, file.string())};

@@ -2,11 +2,28 @@
 
 #include <algorithm>
 
+#include "parallel.h"
+
 namespace lab {
 namespace {
 
 // Alignment of windows, in bytes: whole pixels and a multiple of 256 bytes, the most that any device requires.
 constexpr size_t alignment = 64 * sizeof(FilmPixel);
+
+// Adds what light paths sent to a pixel.
+void add_splats(FilmPixel& pixel, const uint32_t* words, double unit) {
+    const auto number = [&](int half, int channel) {
+        const uint32_t* word = words + 6 * half + 2 * channel;
+        return unit * static_cast<double>(uint64_t{word[1]} << 32 | word[0]);
+    };
+    for (int channel = 0; channel < 3; ++channel) {
+        const double first = number(0, channel), second = number(1, channel);
+        const double sum = first + second + double{pixel.sum[channel]} + double{pixel.compensation[channel]};
+        pixel.sum[channel] = static_cast<float>(sum);
+        pixel.compensation[channel] = static_cast<float>(sum - double{pixel.sum[channel]});
+        pixel.difference[channel] = static_cast<float>(double{pixel.difference[channel]} + (first - second));
+    }
+}
 
 }  // namespace
 
@@ -22,21 +39,34 @@ MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
             .is_seen_in_parts = true};
 }
 
+MemoryNeed Film::memory_need_of_splats(uint32_t width, uint32_t height) {
+    return {.what = "light of light paths",
+            .bytes = size_t{width} * height * SPLAT_WORDS * sizeof(uint32_t),
+            .usage = vk::BufferUsageFlagBits::eStorageBuffer};
+}
+
 size_t Film::max_pixels(const DeviceDescription& device) {
     return std::min(device.largest_buffer, device.memory) / alignment * (alignment / sizeof(FilmPixel));
 }
 
-Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_window)
+Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_window, float splat_unit)
     : width_(width),
       height_(height),
       buffer_(device, memory_need(width, height)),
       window_size_(std::min(
-          {buffer_.size(), max_window / alignment * alignment, device.limits().maxStorageBufferRange / alignment * alignment})) {
+          {buffer_.size(), max_window / alignment * alignment, device.limits().maxStorageBufferRange / alignment * alignment})),
+      splat_unit_(splat_unit) {
+    if (splat_unit > 0) splats_.emplace(device, memory_need_of_splats(width, height));
     clear();
 }
 
 Binding Film::binding() const {
     return buffer_binding(BINDING_FILM, vk::DescriptorType::eStorageBufferDynamic, buffer_, window_size_);
+}
+
+std::optional<Binding> Film::splat_binding() const {
+    if (!splats_) return {};
+    return storage_binding(BINDING_SPLATS, *splats_);
 }
 
 FilmWindow Film::window_from(uint32_t block) const {
@@ -48,7 +78,10 @@ FilmWindow Film::window_from(uint32_t block) const {
             end_row < height_ ? static_cast<uint32_t>(end_row) / BLOCK_HEIGHT * blocks_per_row : count_blocks({width_, height_})};
 }
 
-void Film::clear() { buffer_.clear(); }
+void Film::clear() {
+    buffer_.clear();
+    if (splats_) splats_->clear();
+}
 
 void Film::resize(uint32_t width, uint32_t height) {
     width_ = width;
@@ -59,9 +92,19 @@ void Film::resize(uint32_t width, uint32_t height) {
 FilmImage Film::read() const {
     FilmImage image{width_, height_, std::vector<FilmPixel>(size_t{width_} * height_)};
     buffer_.read(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+    if (splats_) {
+        std::vector<uint32_t> words(image.pixels.size() * SPLAT_WORDS);
+        splats_->read(words.data(), words.size() * sizeof(uint32_t));
+        in_parallel(image.pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) add_splats(image.pixels[i], &words[i * SPLAT_WORDS], double{splat_unit_});
+        });
+    }
     return image;
 }
 
-void Film::write(const FilmImage& image) { buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel)); }
+void Film::write(const FilmImage& image) {
+    if (splats_) splats_->clear();
+    buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+}
 
 }  // namespace lab

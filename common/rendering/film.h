@@ -1,5 +1,7 @@
 // Sums the samples of all pixels on the device, accurate for up to 10^7 samples per pixel.
 #pragma once
+#include <optional>
+
 #include "film/film_image.h"
 #include "gpu/compute_kernel.h"
 
@@ -19,21 +21,27 @@ class Film {
   public:
     // Memory for a film of this size.
     static MemoryNeed memory_need(uint32_t width, uint32_t height);
+    // Memory for what light paths add to it. It is bound as a whole, since they reach any pixel.
+    static MemoryNeed memory_need_of_splats(uint32_t width, uint32_t height);
     // Number of pixels of the largest film that a device can hold.
     static size_t max_pixels(const DeviceDescription& device);
 
     // Starts without samples. A window has at most `max_window` bytes; it must hold a row of blocks and 128 pixels.
-    Film(const Device& device, uint32_t width, uint32_t height, size_t max_window = SIZE_MAX);
+    // Light paths add multiples of `splat_unit`, see SPLAT_WORDS; 0 if there are none.
+    Film(const Device& device, uint32_t width, uint32_t height, size_t max_window = SIZE_MAX, float splat_unit = 0);
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     // Binds a window, at an offset given with each dispatch.
     Binding binding() const;
+    std::optional<Binding> splat_binding() const;  // if light paths add anything
+    float splat_unit() const { return splat_unit_; }
     FilmWindow window_from(uint32_t block) const;
 
     void clear();
     // Clears and resizes the film, to at most the number of pixels that it was created with.
     void resize(uint32_t width, uint32_t height);
+    // With what light paths added.
     FilmImage read() const;
     void write(const FilmImage& image);  // of the same size
 
@@ -42,6 +50,8 @@ class Film {
     uint32_t height_;
     Buffer buffer_;
     size_t window_size_;  // bytes
+    float splat_unit_;
+    std::optional<Buffer> splats_;  // of light paths
 };
 
 }  // namespace lab

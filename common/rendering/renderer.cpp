@@ -65,12 +65,24 @@ RenderParameters default_parameters(const Scene& scene, const CameraPose& camera
             .splitting_factor = 1,
             .roulette_start = no_roulette,
             .survival_cap = 0.95f,
-            .survival_weight = 1};
+            .survival_weight = 1,
+            .splat_unit = 0};
 }
 
-std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size) {
-    std::vector<MemoryNeed> needs{Film::memory_need(image_size.x, image_size.y)};
-    if (are_pixels_shared(image_size)) needs.push_back(memory_need_of_samples());
+float splat_unit_of(const Scene& scene, Strategy strategy, const Capabilities& handles) {
+    const SceneFeatures features = features_of(scene);
+    if (!handles.light_paths || strategy == Strategy::bounces || !features.dielectrics || features.media) return 0;
+    float brightest = 0;
+    for (const Material& material : scene.materials)
+        brightest = std::max({brightest, material.emission.r, material.emission.g, material.emission.b});
+    return features.area_lights ? 0x1p-40f * brightest : 0;
+}
+
+std::vector<MemoryNeed> Renderer::memory_needs(const RenderParameters& parameters) {
+    const uvec2 size = parameters.image_size;
+    std::vector<MemoryNeed> needs{Film::memory_need(size.x, size.y)};
+    if (are_pixels_shared(size)) needs.push_back(memory_need_of_samples());
+    if (parameters.splat_unit > 0) needs.push_back(Film::memory_need_of_splats(size.x, size.y));
     return needs;
 }
 
@@ -80,7 +92,7 @@ Renderer::Renderer(const Device& device, const SceneBackend& scene_backend, cons
       estimator_(estimator),
       parameters_(device, std::span<const RenderParameters>(&parameters, 1), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
-      film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window) {
+      film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window, parameters.splat_unit) {
     Estimator configured = estimator;
     std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
                                   storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
@@ -88,6 +100,10 @@ Renderer::Renderer(const Device& device, const SceneBackend& scene_backend, cons
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
+    }
+    if (const auto splats = film_.splat_binding()) {
+        configured.defines.emplace_back("SPLATS");
+        bindings.push_back(*splats);
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = scene_backend.make_tracer(configured, bindings);

@@ -17,10 +17,14 @@ inline constexpr uint32_t no_roulette = UINT32_MAX;
 RenderParameters default_parameters(const Scene& scene, uvec2 image_size);
 RenderParameters default_parameters(const Scene& scene, const CameraPose& camera, uvec2 image_size);
 
+// splat_unit for an estimator, or 0 if camera paths find all light: without lamps and glass, and in media. It is 2^-40 of the
+// brightest emission: no picture is brighter than its lamps, so 2^24 samples of a pixel fit into 64 bits.
+float splat_unit_of(const Scene& scene, Strategy strategy, const Capabilities& handles);
+
 class Renderer {
   public:
-    // Memory that a renderer of this image size needs.
-    static std::vector<MemoryNeed> memory_needs(uvec2 image_size);
+    // Memory that a renderer needs.
+    static std::vector<MemoryNeed> memory_needs(const RenderParameters& parameters);
 
     // Device and acceleration structure must outlive the renderer. `further_bindings` belong to the estimator; `max_film_window`
     // is passed to Film.
@@ -41,7 +45,7 @@ class Renderer {
     // Samples per pixel so far, averaged over the image.
     double samples() const;
 
-    // Restarts with other parameters, for an image of at most as many pixels as the first one.
+    // Restarts with other parameters, but the same splat_unit, for an image of at most as many pixels as the first one.
     void restart(const RenderParameters& parameters);
     // Continues from an image of the same size.
     void resume(const FilmImage& image);

@@ -120,6 +120,7 @@ RenderParameters make_parameters(const Chapter& chapter, const Scene& scene, con
                 parameters.*member = static_cast<Number>(value_of(chapter, i, options));
             },
             chapter.options[i].parameter);
+    if (!options.image.view) parameters.splat_unit = splat_unit_of(scene, strategy_of(chapter, options), chapter.handles);
     return parameters;
 }
 

@@ -26,6 +26,7 @@ struct Capabilities {
     bool lens = false;         // has a camera with an aperture
     bool media = false;        // light scatters between surfaces, too
     bool light_tree = false;   // light samples choose a triangle by a tree over all of them
+    bool light_paths = false;  // paths begin at lamps, too, where something of glass may focus their light
 };
 
 struct SceneArray {

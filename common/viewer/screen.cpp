@@ -268,13 +268,18 @@ DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr
     : device_(&device),
       film_(&film),
       picture_(std::move(picture)),
-      largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
-      kernel_(device, {.file = project_folder() / "shaders" / "engine/display.comp"},
-              std::vector<Binding>{
-                  film.binding(),
-                  {.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture_->info()}},
-                  storage_binding(BINDING_LARGEST_VALUE, largest_value_)},
-              sizeof(DisplayParameters)) {}
+      largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer) {
+    const auto splats = film.splat_binding();
+    std::vector<Binding> bindings{
+        film.binding(),
+        {.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture_->info()}},
+        storage_binding(BINDING_LARGEST_VALUE, largest_value_)};
+    if (splats) bindings.push_back(*splats);
+    kernel_.emplace(device,
+                    ShaderSource{.file = project_folder() / "shaders" / "engine/display.comp",
+                                 .defines = splats ? std::vector<std::string>{"SPLATS"} : std::vector<std::string>{}},
+                    bindings, sizeof(DisplayParameters));
+}
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform, float exposure) const {
     const bool is_radiance = transform == DisplayTransform::exposure;
@@ -284,7 +289,8 @@ void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransfo
                                  .block_count = count_blocks({picture_->width(), picture_->height()}),
                                  .scale = is_radiance ? std::exp2(exposure) : 1.0f,
                                  .is_srgb = is_radiance,
-                                 .divides_by_largest = 0};
+                                 .divides_by_largest = 0,
+                                 .splat_unit = film_->splat_unit()};
     wait_for_writes(commands);
     if (transform == DisplayTransform::maximum) {
         commands.fillBuffer(largest_value_.handle(), 0, VK_WHOLE_SIZE, 0);
@@ -304,7 +310,7 @@ void DisplayPass::record_parts(const vk::raii::CommandBuffer& commands, DisplayP
     for (uint32_t block = 0; block < film_blocks;) {
         const FilmWindow window = film_->window_from(block);
         parameters.first_film_pixel = window.first_pixel;
-        kernel_.record(commands, &parameters, groups, window.offset());
+        kernel_->record(commands, &parameters, groups, window.offset());
         block = window.end_block;
     }
 }

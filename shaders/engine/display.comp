@@ -10,6 +10,20 @@ layout(set = 0, binding = BINDING_PICTURE, rgba8) writeonly uniform image2D pict
 // The bits of the largest value: as integers, those of non-negative floats are ordered like the floats.
 layout(scalar, set = 0, binding = BINDING_LARGEST_VALUE) buffer LargestValue { uint largest_value; };
 
+#ifdef SPLATS
+layout(scalar, set = 0, binding = BINDING_SPLATS) readonly buffer Splats { uint splats[]; };
+
+// The light that light paths sent to a pixel.
+vec3 get_splats(uint pixel) {
+    vec3 radiance = vec3(0.0);
+    for (uint i = 0u; i < SPLAT_WORDS; i += 2u) {
+        uint word = SPLAT_WORDS * pixel + i;
+        radiance[i / 2u % 3u] += display.splat_unit * (float(splats[word]) + 4294967296.0 * float(splats[word + 1u]));
+    }
+    return radiance;
+}
+#endif
+
 layout(local_size_x = BLOCK_SIZE) in;
 
 vec3 get_srgb(vec3 linear) {
@@ -24,7 +38,11 @@ void show_pixel(uvec2 position) {
     FilmPixel pixel = film[film_index];
     // Until the new picture has a sample here, the previous one stays.
     if (pixel.sample_count == 0u) return;
-    vec3 radiance = (pixel.sum + pixel.compensation) / float(pixel.sample_count);
+    vec3 radiance = pixel.sum + pixel.compensation;
+#ifdef SPLATS
+    radiance += get_splats(film_index + display.first_film_pixel);
+#endif
+    radiance /= float(pixel.sample_count);
 
     if (display.divides_by_largest == 2u) {
         float largest = max(max(radiance.r, radiance.g), max(radiance.b, 0.0));

@@ -61,7 +61,7 @@ TEST(Memory, OfFilmsIsWhatTheyAllocate) {
 // A binding of 128 MiB, the limit of some devices, holds 4.2 million pixels.
 TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
     for (const auto& size : {uvec2(4096, 4096), uvec2(7680, 2160)})
-        EXPECT_EQ(refusal([&] { require_memory(test_device(), Renderer::memory_needs(size)); }), "");
+        EXPECT_EQ(refusal([&] { require_memory(test_device(), Renderer::memory_needs({.image_size = size})); }), "");
     const size_t largest = Film::max_pixels(test_device().description());
     const MemoryNeed fits = Film::memory_need(static_cast<uint32_t>(largest / 8), 8),
                      too_large = Film::memory_need(static_cast<uint32_t>(largest / 8 + 1), 8);
@@ -70,7 +70,7 @@ TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
 }
 
 TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {
-    const auto needs = Renderer::memory_needs({48, 40});
+    const auto needs = Renderer::memory_needs({.image_size = {48, 40}});
     ASSERT_EQ(needs.size(), 2u);
     EXPECT_EQ(needs[0].bytes, Film::memory_need(48, 40).bytes);
     // Enough to keep a large device busy with a small image, and within every device's limits.

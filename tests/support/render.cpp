@@ -31,6 +31,16 @@ Backend fastest_backend() {
     return device.kind == "CPU" && is_supported(native_backend, device) ? native_backend : compute_backend;
 }
 
+namespace {
+
+// The abilities of an estimator's chapter; none for other estimators.
+Chapter chapter_of(const Estimator& estimator) {
+    const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
+    return std::filesystem::exists(folder / "chapter.json") ? load_chapter(folder.filename().string()) : Chapter{};
+}
+
+}  // namespace
+
 RenderParameters make_parameters(const Scene& scene, const RenderSettings& settings) {
     RenderParameters parameters = default_parameters(scene, {settings.width, settings.height});
     parameters.seed_key = seed_key(test_seed(settings.seed));
@@ -41,18 +51,9 @@ RenderParameters make_parameters(const Scene& scene, const RenderSettings& setti
     parameters.roulette_start = settings.roulette_start;
     parameters.survival_cap = settings.survival_cap;
     parameters.survival_weight = settings.survival_weight;
+    parameters.splat_unit = splat_unit_of(scene, settings.strategy, chapter_of(settings.estimator).handles);
     return parameters;
 }
-
-namespace {
-
-// The abilities of an estimator's chapter; none for other estimators.
-Chapter chapter_of(const Estimator& estimator) {
-    const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
-    return std::filesystem::exists(folder / "chapter.json") ? load_chapter(folder.filename().string()) : Chapter{};
-}
-
-}  // namespace
 
 bool samples_probe(const Estimator& estimator) { return chapter_of(estimator).handles.light_probe_sampling; }
 

@@ -38,6 +38,7 @@ TEST(Chapter, SaysWhatItsShaderDoes) {
         EXPECT_EQ(chapter.handles.microfacets, mentions("microfacets[")) << name;
         EXPECT_EQ(chapter.handles.lens, mentions("aperture_radius")) << name;
         EXPECT_EQ(chapter.handles.media, mentions("get_medium(")) << name;
+        EXPECT_EQ(chapter.handles.light_paths, mentions("add_splat(")) << name;
         EXPECT_EQ(chapter.low_discrepancy, mentions("get_random_words(inout uvec2 seed) {")) << name;
         for (const ChapterChoice& choice : chapter.choices) {
             EXPECT_TRUE(mentions("#define " + choice.define() + " " + choice.values.front().second))
