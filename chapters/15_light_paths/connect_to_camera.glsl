@@ -33,7 +33,7 @@ vec2 get_image_position(vec3 on_aperture, vec3 direction) {
 // Adds the light of x_k to the pixel that sees it. The pixels cover 4 |right| |up| of the plane at distance 1, and a piece of it
 // is seen under a solid angle of cos³ θ_c times its area. So an area of cos θ / r² as seen from the lens receives
 // ρ · power · cos θ / (r² cos³ θ_c · 4 |right| |up|), whatever the number of pixels.
-void connect_to_camera(ShadingData s, vec3 power, inout uvec2 seed) {
+void connect_to_camera(ShadingData s, vec3 power, uint sample_index, inout uvec2 seed) {
     vec3 on_aperture = sample_aperture(seed);
     vec3 to_camera = on_aperture - s.position;
     float distance = length(to_camera);
@@ -58,5 +58,5 @@ void connect_to_camera(ShadingData s, vec3 power, inout uvec2 seed) {
     vec3 radiance = power * get_brdf(s, omega_i) *
                     (cos_o / (distance * distance * cos_camera * cos_camera * cos_camera * picture_area));
     uvec2 pixel = uvec2((0.5 + 0.5 * position) * vec2(parameters.image_size));
-    add_splat(min(pixel, parameters.image_size - 1u), radiance);
+    add_splat(min(pixel, parameters.image_size - 1u), radiance, sample_index);
 }

@@ -1,39 +1,50 @@
-// Paths that begin at a lamp. Where they are at a surface that the camera sees, they send light there.
+// Paths that begin at a lamp. Surfaces that they meet behind glass send the light on to the camera.
 #include "connect_to_camera.glsl"
 
-// Traces a path from a lamp, one for each camera path. It has random numbers of its own: camera paths draw theirs in the same order,
-// whatever happens here.
-void trace_light_path(uvec2 seed) {
-    seed.y ^= 0x80000000u;
-    // y_0: a uniform point on a triangle chosen with probability P, and a direction with density cos θ / π. What it carries is
-    // L_e cos θ over both densities: π L_e A/P, the power of all lamps if they are of one colour.
+// What a light path carries from bounce to bounce.
+struct LightPath {
+    Ray ray;
+    vec3 power;         // of all lamps
+    vec3 throughput;    // what bounces have left of it
+    uint path_length;   // bounces so far
+    uint sample_index;  // of the camera path beside it
+};
+
+// A path that leaves a lamp at y_0: a uniform point on a triangle chosen with probability P, and a direction with density cos θ / π.
+// It carries L_e cos θ over both densities, π L_e A/P: the power of all lamps, if they are of one colour.
+LightPath start_light_path(uint sample_index, inout uvec2 seed) {
+    seed.y ^= 0x80000000u;  // other numbers than the camera path's
     vec2 u;
     LightTriangle light = choose_light_triangle(seed, u);
     LightPoint y = get_light_point(light, vec2(sqrt(u.x) * (1.0 - u.y), sqrt(u.x) * u.y));
     vec3 power = PI * y.emission * light.inverse_density;
-    if (HAS_LIGHT_PROBE_CELLS) power *= 1.0 - LIGHT_PROBE_PROBABILITY;  // the probability of a light sample, not of a light path
-    Ray ray = Ray(y.position_in_front, get_shading_space(y.normal) * sample_hemisphere(get_random_numbers(seed)));
+    if (HAS_LIGHT_PROBE_CELLS) power *= 1.0 - LIGHT_PROBE_PROBABILITY;  // A/P is that of light samples, some of which go to the probe
+    vec3 omega = get_shading_space(y.normal) * sample_hemisphere(get_random_numbers(seed));
+    return LightPath(Ray(y.position_in_front, omega), power, vec3(1.0), 0u, sample_index);
+}
 
-    vec3 throughput = vec3(1.0);
-    for (uint bounces = 1u; bounces <= parameters.max_path_length; ++bounces) {
-        Hit hit;
-        if (!trace_ray(ray, NO_LIMIT, hit)) return;
-        ShadingData s = get_shading_data(hit, ray.direction);
-        throughput *= s.transmittance;
-        if (!is_above_surface(s, s.out_direction)) return;
-        if (bounces == 1u && !s.is_dielectric) return;  // light samples of camera paths find this light
+// Extends the path by one bounce, and sends light from there to the camera. Returns false where the path ends.
+bool extend_light_path(inout LightPath path, inout uvec2 seed) {
+    Hit hit;
+    if (path.path_length == parameters.max_path_length || !trace_ray(path.ray, NO_LIMIT, hit)) return false;
+    ++path.path_length;
+    ShadingData s = get_shading_data(hit, path.ray.direction);
+    path.throughput *= s.transmittance;
+    if (!is_above_surface(s, s.out_direction)) return false;
+    if (path.path_length == 1u && !s.is_dielectric) return false;  // light samples of camera paths find this light
 
-        if (!s.is_dielectric && is_counted(bounces)) connect_to_camera(s, power * throughput, seed);
+    if (!s.is_dielectric && is_counted(path.path_length)) 
+        connect_to_camera(s, path.power * path.throughput, path.sample_index, seed);
 
-        // Go on as a camera path does. Power has no 1/η²: that belongs to radiance.
-        BsdfSample bounce = sample_bsdf(s, seed);
-        if (bounce.weight == vec3(0.0)) return;
-        throughput *= bounce.weight * get_adjoint_factor(s, s.out_direction, bounce.direction);
-        if (bounces >= parameters.roulette_start) {
-            float survival_probability = min(max_component(throughput) / parameters.survival_weight, parameters.survival_cap);
-            if (!happens(survival_probability, seed)) return;
-            throughput /= survival_probability;
-        }
-        ray = get_ray_from_surface(s, bounce.direction);
+    // Go on like a camera path, but without 1/η²: that belongs to radiance, and this is power.
+    BsdfSample bounce = sample_bsdf(s, seed);
+    if (bounce.weight == vec3(0.0)) return false;
+    path.throughput *= bounce.weight * get_adjoint_factor(s, s.out_direction, bounce.direction);
+    if (path.path_length >= parameters.roulette_start) {
+        float survival_probability = min(max_component(path.throughput) / parameters.survival_weight, parameters.survival_cap);
+        if (!happens(survival_probability, seed)) return false;
+        path.throughput /= survival_probability;
     }
+    path.ray = get_ray_from_surface(s, bounce.direction);
+    return true;
 }

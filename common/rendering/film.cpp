@@ -23,6 +23,7 @@ void add_splats(FilmPixel& pixel, const uint32_t* words, double unit) {
         pixel.compensation[channel] = static_cast<float>(sum - double{pixel.sum[channel]});
         pixel.difference[channel] = static_cast<float>(double{pixel.difference[channel]} + (first - second));
     }
+    pixel.invalid_count = std::min(pixel.invalid_count + words[SPLAT_WORDS - 1], pixel.sample_count);
 }
 
 }  // namespace

@@ -13,14 +13,12 @@ layout(scalar, set = 0, binding = BINDING_LARGEST_VALUE) buffer LargestValue { u
 #ifdef SPLATS
 layout(scalar, set = 0, binding = BINDING_SPLATS) readonly buffer Splats { uint splats[]; };
 
-// The light that light paths sent to a pixel.
-vec3 get_splats(uint pixel) {
-    vec3 radiance = vec3(0.0);
-    for (uint i = 0u; i < SPLAT_WORDS; i += 2u) {
-        uint word = SPLAT_WORDS * pixel + i;
-        radiance[i / 2u % 3u] += display.splat_unit * (float(splats[word]) + 4294967296.0 * float(splats[word + 1u]));
-    }
-    return radiance;
+// Adds the light that light paths sent to a pixel.
+void add_splats(inout FilmPixel pixel, uint index) {
+    uint word = SPLAT_WORDS * index;
+    for (uint i = 0u; i < 6u; ++i, word += 2u)
+        pixel.sum[i % 3u] += display.splat_unit * (float(splats[word]) + 4294967296.0 * float(splats[word + 1u]));
+    pixel.invalid_count += splats[word];
 }
 #endif
 
@@ -38,11 +36,10 @@ void show_pixel(uvec2 position) {
     FilmPixel pixel = film[film_index];
     // Until the new picture has a sample here, the previous one stays.
     if (pixel.sample_count == 0u) return;
-    vec3 radiance = pixel.sum + pixel.compensation;
 #ifdef SPLATS
-    radiance += get_splats(film_index + display.first_film_pixel);
+    add_splats(pixel, film_index + display.first_film_pixel);
 #endif
-    radiance /= float(pixel.sample_count);
+    vec3 radiance = (pixel.sum + pixel.compensation) / float(pixel.sample_count);
 
     if (display.divides_by_largest == 2u) {
         float largest = max(max(radiance.r, radiance.g), max(radiance.b, 0.0));

@@ -44,9 +44,6 @@ Ray start_sample(uvec2 position, uint index, out uvec2 seed) {
 #ifdef LIMITED_LOOPS
     start_counting_iterations();
 #endif
-#ifdef SPLATS
-    start_splats(index);
-#endif
     uint pixel_index = position.y * parameters.image_size.x + position.x;
     seed = random_start_state(pixel_index, parameters.first_sample + index, parameters.seed_key);
     return sample_camera_ray(position, seed);
@@ -59,9 +56,6 @@ uint film_index;
 uint sample_place, sample_stride;
 // Adds the radiance of a finished sample to this thread's pixel.
 void finish_sample(vec3 radiance) {
-#ifdef SPLATS
-    if (has_invalid_splat) radiance = vec3(uintBitsToFloat(0x7fc00000u));
-#endif
 #ifdef SHARED_PIXELS
     samples[sample_place] = radiance;
     sample_place += sample_stride;
