@@ -1,7 +1,8 @@
-// Three ways to choose an emissive triangle: by the tree, by its power as in earlier chapters, and all alike.
-const uint CHOOSES_BY_TREE = 0u;
-const uint CHOOSES_BY_POWER = 1u;
-const uint CHOOSES_UNIFORMLY = 2u;
+// Three ways to choose an emissive triangle.
+const uint CHOOSES_BY_TREE = 0u;    // a LIGHT_CHOICE: by the tree
+const uint CHOOSES_BY_POWER = 1u;   // a LIGHT_CHOICE: by its power, as in earlier chapters
+const uint CHOOSES_UNIFORMLY = 2u;  // a LIGHT_CHOICE: all alike
+// How light samples choose: one of the constants above, which --light-choice chooses.
 #ifndef LIGHT_CHOICE
 #define LIGHT_CHOICE CHOOSES_BY_TREE
 #endif
