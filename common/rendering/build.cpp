@@ -41,7 +41,7 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     build.job = std::move(job);
     const RenderJob& wanted = build.job;
     // Fail before loading the scene takes time and memory.
-    require_memory(device, Renderer::memory_needs(wanted.parameters));
+    require_memory(device, Renderer::memory_needs(wanted.parameters.image_size, wanted.parameters.splat_unit));
     if (first <= BuildStage::gpu_scene) {
         build.gpu_scene =
             std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.handles);

@@ -41,7 +41,7 @@ MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
 }
 
 MemoryNeed Film::memory_need_of_splats(uint32_t width, uint32_t height) {
-    return {.what = "light of light paths",
+    return {.what = "pixels of light paths",
             .bytes = size_t{width} * height * SPLAT_WORDS * sizeof(uint32_t),
             .usage = vk::BufferUsageFlagBits::eStorageBuffer};
 }

@@ -78,11 +78,10 @@ float splat_unit_of(const Scene& scene, Strategy strategy, const Capabilities& h
     return features.area_lights ? 0x1p-40f * brightest : 0;
 }
 
-std::vector<MemoryNeed> Renderer::memory_needs(const RenderParameters& parameters) {
-    const uvec2 size = parameters.image_size;
-    std::vector<MemoryNeed> needs{Film::memory_need(size.x, size.y)};
-    if (are_pixels_shared(size)) needs.push_back(memory_need_of_samples());
-    if (parameters.splat_unit > 0) needs.push_back(Film::memory_need_of_splats(size.x, size.y));
+std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size, float splat_unit) {
+    std::vector<MemoryNeed> needs{Film::memory_need(image_size.x, image_size.y)};
+    if (are_pixels_shared(image_size)) needs.push_back(memory_need_of_samples());
+    if (splat_unit > 0) needs.push_back(Film::memory_need_of_splats(image_size.x, image_size.y));
     return needs;
 }
 

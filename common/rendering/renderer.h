@@ -24,7 +24,7 @@ float splat_unit_of(const Scene& scene, Strategy strategy, const Capabilities& h
 class Renderer {
   public:
     // Memory that a renderer needs.
-    static std::vector<MemoryNeed> memory_needs(const RenderParameters& parameters);
+    static std::vector<MemoryNeed> memory_needs(uvec2 image_size, float splat_unit = 0);
 
     // Device and acceleration structure must outlive the renderer. `further_bindings` belong to the estimator; `max_film_window`
     // is passed to Film.

@@ -6,6 +6,7 @@
 
 #include "files/project_folder.h"
 #include "film/film_file.h"
+#include "support/dielectric_scenes.h"
 #include "support/gpu_test.h"
 #include "support/render.h"
 #include "support/scenes.h"
@@ -13,7 +14,7 @@
 namespace lab {
 namespace {
 
-// A box with a lamp, so that pixels differ. The image size is not a multiple of the block size.
+// A box with a lamp, so that pixels differ.
 Scene lit_box() {
     Scene scene = closed_box(diffuse_material({0.7f, 0.5f, 0.3f}));
     scene.materials.push_back(diffuse_material(vec3(0.2f), {5, 6, 7}));
@@ -23,12 +24,14 @@ Scene lit_box() {
 
 class Determinism : public OnEachChapter {
   protected:
+    // The image size is not a multiple of the block size.
     RenderSettings settings() const {
         RenderSettings settings{.width = 53, .height = 37, .samples = 24, .max_path_length = 5};
         settings.estimator = chapter_estimator(GetParam());
         return settings;
     }
-    const Scene scene = lit_box();
+    // With glass if it can send light from lamps to any pixel.
+    const Scene scene = has_light_paths(GetParam()) ? room_with_box(dielectric_material(1.5f)) : lit_box();
 };
 // A default run has those with a loop of their own, and one of those with the same paths.
 INSTANTIATE_TEST_SUITE_P(Chapters, Determinism, testing::ValuesIn(all_chapters), [](const auto& chapter) {

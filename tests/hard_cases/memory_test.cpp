@@ -61,7 +61,7 @@ TEST(Memory, OfFilmsIsWhatTheyAllocate) {
 // A binding of 128 MiB, the limit of some devices, holds 4.2 million pixels.
 TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
     for (const auto& size : {uvec2(4096, 4096), uvec2(7680, 2160)})
-        EXPECT_EQ(refusal([&] { require_memory(test_device(), Renderer::memory_needs({.image_size = size})); }), "");
+        EXPECT_EQ(refusal([&] { require_memory(test_device(), Renderer::memory_needs(size)); }), "");
     const size_t largest = Film::max_pixels(test_device().description());
     const MemoryNeed fits = Film::memory_need(static_cast<uint32_t>(largest / 8), 8),
                      too_large = Film::memory_need(static_cast<uint32_t>(largest / 8 + 1), 8);
@@ -69,8 +69,17 @@ TEST(Memory, HoldsFilmsOfSixteenMegapixels) {
     EXPECT_NE(refusal([&] { require_memory(test_device(), {&too_large, 1}); }), "");
 }
 
+// Light paths reach any pixel, so what they add must be bound as a whole.
+TEST(Memory, OfLightPathsLimitsTheFilm) {
+    const auto needs = [](uint32_t rows) { return Renderer::memory_needs({4096, rows}, 1); };
+    EXPECT_EQ(needs(64).back().bytes, 4096u * 64u * SPLAT_WORDS * sizeof(uint32_t));
+    const size_t most = largest_visible(test_device(), vk::BufferUsageFlagBits::eStorageBuffer) / needs(1).back().bytes;
+    const std::string text = refusal([&] { require_memory(test_device(), needs(static_cast<uint32_t>(most + 1))); });
+    EXPECT_NE(text.find("pixels of light paths"), std::string::npos) << text;
+}
+
 TEST(Memory, OfSmallRendersIsThatOfFilmAndSamples) {
-    const auto needs = Renderer::memory_needs({.image_size = {48, 40}});
+    const auto needs = Renderer::memory_needs({48, 40});
     ASSERT_EQ(needs.size(), 2u);
     EXPECT_EQ(needs[0].bytes, Film::memory_need(48, 40).bytes);
     // Enough to keep a large device busy with a small image, and within every device's limits.

@@ -32,6 +32,7 @@ bool weights_lights(const std::string& chapter) {
 bool handles_dielectrics(const std::string& chapter) { return load_chapter(chapter).handles.dielectrics; }
 
 bool handles_microfacets(const std::string& chapter) { return load_chapter(chapter).handles.microfacets; }
+bool has_light_paths(const std::string& chapter) { return load_chapter(chapter).handles.light_paths; }
 
 bool has_option(const std::string& chapter, const std::string& option) {
     return std::ranges::count(load_chapter(chapter).options, option, &ChapterOption::name) > 0;

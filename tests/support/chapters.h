@@ -19,6 +19,7 @@ bool samples_lights(const std::string& chapter);
 bool weights_lights(const std::string& chapter);  // light samples and bounces share the light by weights
 bool handles_dielectrics(const std::string& chapter);
 bool handles_microfacets(const std::string& chapter);
+bool has_light_paths(const std::string& chapter);
 bool has_option(const std::string& chapter, const std::string& option);
 bool splits_paths(const std::string& chapter);
 bool has_roulette(const std::string& chapter);
