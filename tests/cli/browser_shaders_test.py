@@ -44,6 +44,7 @@ FEATURES = {
 FEATURES["everything"] = [
     STACK,
     "TEXTURE_COUNT 1",
+    "SPLATS",
     *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)}),
 ]
 NOTEBOOK = PROJECT / "notebook"

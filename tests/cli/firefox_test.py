@@ -14,7 +14,7 @@ import numpy as np
 from book import live
 from image_files import Exr
 from program import BINARIES, ProgramTest
-from project import CHAPTERS, course, scene_of
+from project import CHAPTERS, course, description, scene_of
 from tools_path import PROJECT
 
 FIREFOX, DISPLAY = shutil.which("firefox-esr") or shutil.which("firefox"), shutil.which("xvfb-run")
@@ -89,12 +89,14 @@ class Firefox_all(Site, ProgramTest):
             _, _, chapter, name, size = path.split("/")
             width, height = map(int, size.split("x"))
             file = self.folder / f"{chapter}.exr"
+            # Camera paths without light paths are those of the chapter before.
+            program = description(chapter)["continues"] if description(chapter).get("light_paths") else chapter
             subprocess.run(
                 list(
                     map(
                         str,
                         (
-                            BINARIES / chapter,
+                            BINARIES / program,
                             scene_of(name),
                             "--width",
                             width,

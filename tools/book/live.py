@@ -47,6 +47,8 @@ SCRIPTS = [
     "verdict.js",
     "facts.js",
     "loading.js",
+    "film.js",
+    "splats.js",
     "renderer.js",
     "editor.js",
     "plot.js",
@@ -71,6 +73,7 @@ REPLACEABLE = "shaders/replaceable.json"  # the files that a chapter may replace
 CONTINUED = "chapters/continued.json"  # {chapter: that which it continues}: written for pages
 IN_DRAWS = {
     "engine/sample_loop.glsl": "engine/single_sample.glsl",
+    "engine/splats.glsl": "engine/splats_of_a_draw.glsl",
     "engine/stuck_loop.glsl": "engine/stuck_loop_of_a_draw.glsl",
     "observation/recorded_events.glsl": "observation/recorded_event_of_a_draw.glsl",
 }  # what a page has in place of the programs'

@@ -182,7 +182,7 @@ live.path = (() => {
         gl.uniform1ui(linked.place("recorded_sample"), sample);
         rendering.turns = turns;
         rendering.draw(0, 2, 1, false);
-        const texels = rendering.readWords(rendering.films[1]), words = new Uint32Array(2 * HALF), events = [];
+        const texels = rendering.films[1].readWords(), words = new Uint32Array(2 * HALF), events = [];
         rendering.stop();
         for (let i = 0; i < MOST_EVENTS; ++i) {
             texels.forEach((each, part) => [0, 1].forEach(row => {

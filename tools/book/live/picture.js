@@ -153,12 +153,24 @@ live.Picture = (() => {
                 named["path_trace.glsl"] = "shaders/observation/view.glsl";
                 named["sample_loop.glsl"] = "shaders/engine/sample_loop.glsl";
             }
-            const translated = live.glsl.translate({sources, chapter, named, defines: [...defines, ...views], scene});
+            const splats = this.hasLightPaths(parameters, defines, views) ? ["SPLATS"] : [];
+            const adder = splats.length ? await this.renderer.compile(live.Splats.adder(live.sources, chapter)) : undefined;
+            const all = [...defines, ...views, ...splats];
+            const translated = live.glsl.translate({sources, chapter, named, defines: all, scene});
             const started = performance.now(), linked = await this.renderer.compile(translated);
             const compileTime = performance.now() - started;
             if (this.camera?.hasMoved) parameters.set(this.camera.words);
-            const rendering = new Rendering(this.renderer, {translated, linked, scene, parameters, size});
+            const rendering = new Rendering(this.renderer, {translated, linked, adder, scene, parameters, size});
             return {rendering, translated, chapter, sources, scene, defines, parameters, compileTime};
+        }
+
+        // Whether light paths find a part of the light. Where the device cannot add it up, camera paths find all.
+        hasLightPaths(parameters, defines, views) {
+            const {renderer, frame: {note}} = this, unit = parameters[renderer.layout.offsetOf("RenderParameters", "splat_unit")];
+            if (!unit || views.length || defines.includes("STRATEGY STRATEGY_BOUNCES")) return false;
+            const lack = live.Splats.lackOf(renderer);
+            if (lack) note.textContent = `This device lacks ${lack}, which light paths need: camera paths find all light.`;
+            return !lack;
         }
 
         // Renders a picture; look(film, state, verdict) is called at powers of two. Returns whether it came to its end.

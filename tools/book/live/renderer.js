@@ -1,12 +1,9 @@
-// Renders a scene with WebGL 2: a texture of 32-bit words holds its arrays, and three more hold the film, twelve words a pixel.
+// Renders a scene with WebGL 2: a texture of 32-bit words holds its arrays, and a film (film.js) the sums of samples.
 "use strict";
 
 live.rendering = (() => {
-    const WIDTH = 2048;        // texels of the arrays' textures, which every device allows
-    const MOST_PROGRAMS = 16;  // that are kept
-    const FILM = [0, 1, 2];    // its textures
-    // Which of them a draw writes: some devices write fewer bits at once, and draw everything twice.
-    const PASSES = [[FILM], [[0, 1], [2]], [[0], [1], [2]]];
+    const WIDTH = 2048;           // texels of the arrays' textures, which every device allows
+    const MOST_PROGRAMS = 16;     // that are kept
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
     // Turns that the loops of a sample may take at first, by how much this grows, and milliseconds of a draw that some systems do
     // not bear.
@@ -122,7 +119,7 @@ void main() {
             gl.enable(gl.SCISSOR_TEST);
             let start = 0;
             for (const [picture, end] of parts) {
-                picture.bindFilm(display, picture.isFirstPass ? 1 : 0);
+                picture.films[picture.isFirstPass ? 1 : 0].bind(display);
                 gl.scissor(start, 0, end - start, size[1]);
                 gl.drawArrays(gl.TRIANGLES, 0, 3);
                 start = end;
@@ -132,9 +129,11 @@ void main() {
 
     // A picture of a scene with a compiled program.
     class Rendering {
-        constructor(renderer, {translated: {hasSampleLoop}, linked, scene, parameters, size}) {
+        constructor(renderer, {translated: {hasSampleLoop}, linked, adder, scene, parameters, size}) {
             const {gl, layout} = renderer;
-            Object.assign(this, {renderer, gl, linked, size, hasSampleLoop, samples: 0, turns: FEW_TURNS});
+            Object.assign(this, {renderer, gl, linked, size, samples: 0, turns: FEW_TURNS});
+            this.splats = adder && new live.Splats(renderer, size, adder);
+            this.rendersMany = hasSampleLoop && !adder;  // samples in a draw: a fragment keeps one connection
             Object.assign(this, {busy: 0, isFirstPass: true, isStopped: false});  // `busy`: milliseconds of draws
             const {words} = scene, height = Math.ceil(words.length / 4 / WIDTH);
             const texels = new Uint32Array(4 * WIDTH * height);
@@ -149,41 +148,10 @@ void main() {
                 this.probe = renderer.image(gl.RGBA32F, probe.width, probe.height, gl.RGBA, gl.FLOAT, floats);
             }
             // Two films take turns, since a shader cannot write what it reads.
-            this.films = [this.makeFilm(), this.makeFilm()];
+            this.films = [0, 1].map(() => new live.Film(renderer, size, Boolean(adder)));
             this.setParameters(parameters);
             for (const {binding, first, count} of scene.buffers)
                 gl.uniform2ui(linked.place(`web_places[${binding}]`), first, count);
-        }
-
-        makeFilm() {
-            const {gl, size} = this;
-            const image = () => this.renderer.image(gl.RGBA32UI, ...size, gl.RGBA_INTEGER, gl.UNSIGNED_INT, null);
-            const textures = FILM.map(image);
-            for (const passes of PASSES) {
-                const frames = passes.map(written => this.makeFrame(textures, written));
-                if (frames.every(({isComplete}) => isComplete)) return {frames, textures};
-                for (const {frame} of frames) gl.deleteFramebuffer(frame);
-            }
-            throw new Error("this device cannot store the sums of a picture: try another browser");
-        }
-
-        // What a draw writes these textures of a film through.
-        makeFrame(textures, written) {
-            const {gl} = this, frame = gl.createFramebuffer();
-            gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-            for (const i of written)
-                gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, textures[i], 0);
-            const isComplete = gl.isContextLost() || gl.checkFramebufferStatus(gl.FRAMEBUFFER) === gl.FRAMEBUFFER_COMPLETE;
-            gl.drawBuffers(FILM.slice(0, written.at(-1) + 1).map(i => written.includes(i) ? gl.COLOR_ATTACHMENT0 + i : gl.NONE));
-            if (isComplete) this.clear({frame, written});
-            return {frame, written, isComplete};
-        }
-
-        clear({frame, written}) {
-            const {gl} = this;
-            gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-            gl.disable(gl.SCISSOR_TEST);
-            for (const i of written) gl.clearBufferuiv(gl.COLOR, i, [0, 0, 0, 0]);
         }
 
         setParameters(parameters) {
@@ -200,9 +168,9 @@ void main() {
             const {gl, films, arrays, words, probe} = this;
             if (this.isStopped) return;
             this.isStopped = true;
-            for (const texture of [arrays, words, probe, ...films.flatMap(film => film.textures)])
-                gl.deleteTexture(texture ?? null);
-            for (const {frame} of films.flatMap(film => film.frames)) gl.deleteFramebuffer(frame);
+            for (const texture of [arrays, words, probe]) gl.deleteTexture(texture ?? null);
+            for (const film of films) film.delete();
+            this.splats?.delete();
         }
 
         // Sets the members of a uniform struct from words. Returns the words behind it.
@@ -232,26 +200,10 @@ void main() {
             return words.subarray(layout.wordsOf(type));
         }
 
-        bindFilm(linked, film) {
-            for (const i of FILM) this.renderer.bind(linked, `web_film_before[${i}]`, i, this.films[film].textures[i]);
-        }
-
-        // The words of a film, three lists of four a pixel.
-        readWords({frames}) {
-            const {gl, size: [width, height]} = this;
-            return FILM.map(i => {
-                const words = new Uint32Array(4 * width * height);
-                gl.bindFramebuffer(gl.FRAMEBUFFER, frames.find(({written}) => written.includes(i)).frame);
-                gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
-                gl.readPixels(0, 0, width, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, words);
-                return words;
-            });
-        }
-
         // A film: sums of samples, the differences of their halves, the number of rays, of invalid samples, and the place of a
         // stuck loop. Throws if there is no sample at all: a black picture is no evidence.
         read(source = this.films[0]) {
-            const {gl, size: [width, height]} = this, count = width * height, [a, b, c] = this.readWords(source);
+            const {gl, size: [width, height]} = this, count = width * height, [a, b, c] = source.readWords();
             const film = {
                 width,
                 height,
@@ -300,10 +252,10 @@ void main() {
                     while (!this.isStopped && !this.changed && isPaused()) await pause(10);
                     if (this.isStopped || gl.isContextLost()) return false;
                     const started = performance.now();
-                    for (let end = this.hasSampleLoop ? next : this.samples + 1;; ++end) {
+                    for (let end = this.rendersMany ? next : this.samples + 1;; ++end) {
                         this.draw(row, Math.min(rows, size[1] - row), end, isPreview);
                         if (end >= next) break;
-                        this.films.reverse();  // one draw has rendered all rows
+                        this.turnFilms(isPreview);  // one draw has rendered all rows
                     }
                     await this.finished();
                     if (this.isStopped || gl.isContextLost()) return false;
@@ -330,7 +282,7 @@ void main() {
                     if (this.isFirstPass && !isChange) shown();  // the picture before stays until then
                 }
                 if (!isPreview && this.changed) continue;
-                this.films.reverse();
+                this.turnFilms(isPreview);
                 this.isFirstPass = false;
                 shown();
                 if (!isPreview) this.samples = next;
@@ -360,29 +312,34 @@ void main() {
             return true;
         }
 
+        // What has been drawn is now the film. What light paths send waits until all pixels have the sample.
+        turnFilms(isPreview) {
+            const {films, splats} = this;
+            films.reverse();
+            splats?.collect(films[0]);
+            if (!splats || isPreview) return;
+            splats.add(...films);
+            films.reverse();
+        }
+
         clearFilms() {
-            for (const frame of this.films.flatMap(({frames}) => frames)) this.clear(frame);
+            for (const film of this.films) film.clear();
+            this.splats?.clear();
             Object.assign(this, {samples: 0, isFirstPass: true});
         }
 
         draw(row, rows, target, isPreview) {
-            const {gl, linked, linked: {place}, films, size, samples} = this;
+            const {gl, linked, linked: {place}, films, samples} = this;
             gl.useProgram(linked.program);
-            this.bindFilm(linked, 0);
+            films[0].bind(linked);
             this.renderer.bind(linked, "web_arrays", 3, this.arrays);
             this.renderer.bind(linked, "web_words", 4, this.words);
             this.renderer.bind(linked, "light_probe", 5, this.probe ?? null);
             gl.uniform1ui(place("web_target_samples"), target);
-            gl.uniform1ui(place("web_samples_per_pixel"), this.hasSampleLoop ? target - samples : 1);
+            gl.uniform1ui(place("web_samples_per_pixel"), this.rendersMany ? target - samples : 1);
             gl.uniform1i(place("web_is_preview"), isPreview ? 1 : 0);
             gl.uniform1ui(place("web_most_turns"), this.turns);
-            gl.viewport(0, 0, ...size);
-            gl.enable(gl.SCISSOR_TEST);
-            gl.scissor(0, row, size[0], rows);
-            for (const {frame} of films[1].frames) {
-                gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-                gl.drawArrays(gl.TRIANGLES, 0, 3);
-            }
+            films[1].draw(row, rows);
         }
 
         // Waits until the device has done everything so far.
