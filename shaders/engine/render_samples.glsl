@@ -85,6 +85,9 @@ void render_pixel(uint invocation) {
     uint first = film[film_index].sample_count;
 #ifdef LIMITED_LOOPS
     samples_with_own_loops = (dispatch.target_samples - first) / dispatch.threads_per_pixel + 1u;
+#ifdef SPLATS
+    samples_with_own_loops *= 2u;  // a light path and a camera path
+#endif
 #endif
 #ifdef SHARED_PIXELS
     uint turn = group % dispatch.threads_per_pixel;

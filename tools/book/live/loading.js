@@ -29,7 +29,8 @@ live.loading = (() => {
 
     async function loadReference(folder, name) {
         const {width, height, samples, scales, packed} = await loadData(folder, name);
-        const halves = new Uint16Array(await unpack(packed)), count = 3 * width * height;
+        const bytes = new Uint8Array(await unpack(packed)), count = 3 * width * height;
+        const halves = Uint16Array.from({length: 2 * count}, (_, i) => bytes[i] | bytes[2 * count + i] << 8);
         const mean = Float64Array.from(halves.subarray(0, count), half => scales[0] * floatOfHalf(half));
         const variance = Float64Array.from(halves.subarray(count), half => (scales[1] * floatOfHalf(half)) ** 2);
         return {width, height, samples, mean, variance};
