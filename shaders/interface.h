@@ -229,8 +229,9 @@ struct FilmPixel {
     uint invalid_count;  // samples that were infinite or not a number; they add 0
 };
 
-// Light that light paths send to a pixel: for each of its two halves and each channel a number of 64 bits, the low word first, that
-// counts splat_units. Sums of integers do not depend on the order in which threads add. The last word counts what was invalid.
+// Light that light paths send to a pixel: for each of its two halves and each channel a number of 64 bits, the low word first,
+// that counts splat_units. Sums of integers do not depend on the order in which threads add. The last word counts what was
+// invalid.
 SHARED_CONSTANT SPLAT_WORDS = 13u;
 
 // How shaders/engine/display.comp maps radiance to the screen.

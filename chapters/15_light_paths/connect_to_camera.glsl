@@ -44,7 +44,7 @@ void connect_to_camera(ShadingData s, vec3 power, uint sample_index, inout uvec2
     if (!all(lessThan(abs(position), vec2(1.0)))) return;
     if (is_occluded(get_ray_to_point(s, on_aperture), 1.0)) return;
 
-    // ρ as the camera sees it: ω_o leads there.
+    // ρ as the camera sees it: ω_o leads there. That of rough glass has the sign of its cosine, so it is negative behind the surface.
     float cos_o = abs(dot(s.normal, omega)) * get_adjoint_factor(s, omega_i, omega);
     s.out_direction = omega;
 #ifdef FEATURE_MICROFACETS
@@ -55,7 +55,7 @@ void connect_to_camera(ShadingData s, vec3 power, uint sample_index, inout uvec2
     }
 #endif
     float picture_area = 4.0 * length(parameters.camera.right) * length(parameters.camera.up);
-    vec3 radiance = power * get_brdf(s, omega_i) *
+    vec3 radiance = power * abs(get_brdf(s, omega_i)) *
                     (cos_o / (distance * distance * cos_camera * cos_camera * cos_camera * picture_area));
     uvec2 pixel = uvec2((0.5 + 0.5 * position) * vec2(parameters.image_size));
     add_splat(min(pixel, parameters.image_size - 1u), radiance, sample_index);

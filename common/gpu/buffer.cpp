@@ -142,6 +142,15 @@ void Buffer::read(void* data, size_t size) const {
     }
 }
 
+void Buffer::copy(const Buffer& other) {
+    if (mapped_ && other.mapped_)
+        copy_in_parallel(mapped_, other.mapped_, size_);
+    else
+        device_->submit([&](const vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(other.handle(), handle(), vk::BufferCopy(0, 0, size_));
+        });
+}
+
 void Buffer::clear() {
     if (mapped_)
         std::memset(mapped_, 0, size_);

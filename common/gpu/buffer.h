@@ -47,7 +47,8 @@ class Buffer {
     // Copy to or from the start of the buffer, which the device must not be using meanwhile.
     void write(const void* data, size_t size);
     void read(void* data, size_t size) const;
-    void clear();  // to zeros
+    void clear();                    // to zeros
+    void copy(const Buffer& other);  // of the same size
 
     // The contents of a host-visible buffer; empty for others.
     template <typename T>

@@ -103,8 +103,8 @@ Chapter load_chapter(const std::string& name) {
     const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
     const JsonObject root(content, file.string(), "the chapter",
                           {"title", "continues", "default_scene", "strategies", "light_probe_sampling", "unlimited_path_length",
-                           "dielectrics", "microfacets", "lens", "media", "light_tree", "light_paths", "low_discrepancy", "options", "choices",
-                           "check", "exercise", "tests", "measure"});
+                           "dielectrics", "microfacets", "lens", "media", "light_tree", "light_paths", "low_discrepancy",
+                           "options", "choices", "check", "exercise", "tests", "measure"});
     // The last four are for others: tools/check/grading.py, tools/course/handout.py, tests/support/chapters.cpp,
     // tools/report/studies.py.
     if (root.has("check"))

@@ -40,10 +40,11 @@ MemoryNeed Film::memory_need(uint32_t width, uint32_t height) {
             .is_seen_in_parts = true};
 }
 
-MemoryNeed Film::memory_need_of_splats(uint32_t width, uint32_t height) {
-    return {.what = "pixels of light paths",
-            .bytes = size_t{width} * height * SPLAT_WORDS * sizeof(uint32_t),
-            .usage = vk::BufferUsageFlagBits::eStorageBuffer};
+std::vector<MemoryNeed> Film::memory_needs_of_splats(uint32_t width, uint32_t height) {
+    const MemoryNeed splats{.what = "pixels of light paths",
+                            .bytes = size_t{width} * height * SPLAT_WORDS * sizeof(uint32_t),
+                            .usage = vk::BufferUsageFlagBits::eStorageBuffer};
+    return {memory_need(width, height), splats, splats};
 }
 
 size_t Film::max_pixels(const DeviceDescription& device) {
@@ -57,7 +58,12 @@ Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_win
       window_size_(std::min(
           {buffer_.size(), max_window / alignment * alignment, device.limits().maxStorageBufferRange / alignment * alignment})),
       splat_unit_(splat_unit) {
-    if (splat_unit > 0) splats_.emplace(device, memory_need_of_splats(width, height));
+    if (splat_unit > 0) {
+        const std::vector<MemoryNeed> needs = memory_needs_of_splats(width, height);
+        kept_.emplace(device, needs[0]);
+        splats_.emplace(device, needs[1]);
+        kept_splats_.emplace(device, needs[2]);
+    }
     clear();
 }
 
@@ -82,6 +88,13 @@ FilmWindow Film::window_from(uint32_t block) const {
 void Film::clear() {
     buffer_.clear();
     if (splats_) splats_->clear();
+    keep();
+}
+
+void Film::keep() {
+    if (!splats_) return;
+    kept_->copy(buffer_);
+    kept_splats_->copy(*splats_);
 }
 
 void Film::resize(uint32_t width, uint32_t height) {
@@ -92,10 +105,10 @@ void Film::resize(uint32_t width, uint32_t height) {
 
 FilmImage Film::read() const {
     FilmImage image{width_, height_, std::vector<FilmPixel>(size_t{width_} * height_)};
-    buffer_.read(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+    (splats_ ? *kept_ : buffer_).read(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
     if (splats_) {
         std::vector<uint32_t> words(image.pixels.size() * SPLAT_WORDS);
-        splats_->read(words.data(), words.size() * sizeof(uint32_t));
+        kept_splats_->read(words.data(), words.size() * sizeof(uint32_t));
         in_parallel(image.pixels.size(), pixels_per_piece, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) add_splats(image.pixels[i], &words[i * SPLAT_WORDS], double{splat_unit_});
         });
@@ -106,6 +119,7 @@ FilmImage Film::read() const {
 void Film::write(const FilmImage& image) {
     if (splats_) splats_->clear();
     buffer_.write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+    keep();
 }
 
 }  // namespace lab

@@ -21,8 +21,9 @@ class Film {
   public:
     // Memory for a film of this size.
     static MemoryNeed memory_need(uint32_t width, uint32_t height);
-    // Memory for what light paths add to it. It is bound as a whole, since they reach any pixel.
-    static MemoryNeed memory_need_of_splats(uint32_t width, uint32_t height);
+    // Memory for what light paths add to it, and for the copy that keep() makes. It is bound as a whole, since they reach any
+    // pixel.
+    static std::vector<MemoryNeed> memory_needs_of_splats(uint32_t width, uint32_t height);
     // Number of pixels of the largest film that a device can hold.
     static size_t max_pixels(const DeviceDescription& device);
 
@@ -41,8 +42,10 @@ class Film {
     void clear();
     // Clears and resizes the film, to at most the number of pixels that it was created with.
     void resize(uint32_t width, uint32_t height);
-    // With what light paths added.
+    // With what light paths added, as it was when keep() was called last: light that samples have sent to other pixels belongs to
+    // all samples together, so a picture of some of them would be wrong. Without light paths, as it is.
     FilmImage read() const;
+    void keep();
     void write(const FilmImage& image);  // of the same size
 
   private:
@@ -52,6 +55,7 @@ class Film {
     size_t window_size_;  // bytes
     float splat_unit_;
     std::optional<Buffer> splats_;  // of light paths
+    std::optional<Buffer> kept_, kept_splats_;
 };
 
 }  // namespace lab

@@ -81,7 +81,8 @@ float splat_unit_of(const Scene& scene, Strategy strategy, const Capabilities& h
 std::vector<MemoryNeed> Renderer::memory_needs(uvec2 image_size, float splat_unit) {
     std::vector<MemoryNeed> needs{Film::memory_need(image_size.x, image_size.y)};
     if (are_pixels_shared(image_size)) needs.push_back(memory_need_of_samples());
-    if (splat_unit > 0) needs.push_back(Film::memory_need_of_splats(image_size.x, image_size.y));
+    if (splat_unit > 0)
+        for (MemoryNeed& need : Film::memory_needs_of_splats(image_size.x, image_size.y)) needs.push_back(std::move(need));
     return needs;
 }
 
@@ -185,6 +186,7 @@ bool Renderer::advance(uint32_t target_samples) {
     if (next_block_ == blocks) {
         next_block_ = 0;
         finished_samples_ = pass_samples_;
+        film_.keep();
     }
     return finished_samples_ < target_samples;
 }

@@ -8,7 +8,7 @@ void add_splat(uvec2 pixel, vec3 radiance, uint sample_index) {
     vec3 high_digits = floor(units / 4294967296.0);
     uint word = SPLAT_WORDS * (pixel.y * parameters.image_size.x + pixel.x);
     // Not negative, nor NaN, nor so large that sums might overflow.
-    if (!all(greaterThanEqual(units, vec3(0.0))) || !all(lessThan(high_digits, vec3(1048576.0)))) {
+    if (!all(greaterThanEqual(units, vec3(0.0))) || !all(lessThan(high_digits, vec3(67108864.0)))) {
         atomicAdd(splats[word + SPLAT_WORDS - 1u], 1u);
         return;
     }

@@ -1,5 +1,5 @@
-// Chapter 15: light paths and camera paths share the light. What light paths find equals a closed form, and what camera paths find of
-// the same light when they look for all of it.
+// Chapter 15: light paths and camera paths share the light. What light paths find equals a closed form, and what camera paths
+// find of the same light when they look for all of it.
 #include <cmath>
 #include <numbers>
 
@@ -160,6 +160,23 @@ Scene room_with_microfacets() {
     return scene;
 }
 
+// A pane of smooth glass above one of rough glass: what the camera sees has passed both.
+Scene panes() {
+    std::vector<Quad> quads = box_sides(vec3(-1), vec3(1), 0, Facing::inwards);
+    quads.push_back({{-0.7f, 0.95f, -0.7f}, {1.4f, 0, 0}, {0, 0, 1.4f}, 1});
+    for (const Quad& side : box_sides({-0.9f, 0.5f, -0.9f}, {0.9f, 0.6f, 0.9f}, 2, Facing::outwards)) quads.push_back(side);
+    for (const Quad& side : box_sides({-0.9f, 0.2f, -0.9f}, {0.9f, 0.4f, 0.9f}, 3, Facing::outwards)) quads.push_back(side);
+    Scene scene = make_scene({diffuse_material(vec3(0.3f)), diffuse_material(vec3(0.5f), {2, 3, 4}), dielectric_material(1.5f),
+                              dielectric_material(1.5f)},
+                             quads);
+    scene.microfacets.assign(scene.materials.size(), Microfacets{});
+    for (Microfacets& of_material : scene.microfacets) of_material.coat_index = 1.5f;
+    scene.microfacets[3].roughness = 0.3f;
+    integrate_albedo(scene.microfacets[3]);
+    scene.camera = {.position = {0, -0.7f, 0.5f}, .target = {0, 0.4f, 0}, .up = {0, 1, 0}, .vertical_fov = 60};
+    return scene;
+}
+
 struct SharedLight {
     const char* name;
     Scene (*make)();
@@ -189,6 +206,7 @@ const SharedLight shared_lights[] = {
          return scene;
      },
      {0.006, 0.1}},
+    {"rough_glass_behind_smooth_glass", panes, {0.05, 0.75}},
     {"microfacets_all", room_with_microfacets, {0.006, 0.1}},
     {"probe",
      [] {
@@ -209,7 +227,8 @@ const SharedLight shared_lights[] = {
 };
 
 class SharedLightOf : public testing::TestWithParam<SharedLight> {};
-INSTANTIATE_TEST_SUITE_P(, SharedLightOf, testing::ValuesIn(shared_lights), [](const auto& of) { return std::string(of.param.name); });
+INSTANTIATE_TEST_SUITE_P(, SharedLightOf, testing::ValuesIn(shared_lights),
+                         [](const auto& of) { return std::string(of.param.name); });
 
 TEST_P(SharedLightOf, LightAndCameraPathsIsThatOfCameraPaths) {
     const Scene scene = GetParam().make();
