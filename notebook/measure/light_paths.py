@@ -82,6 +82,7 @@ def main():
             rows.append({"side": side, "matte": float(np.mean(~sees_glass)), **found})
     write_json(
         options.output,
-        stamped({"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}),
+        stamped(
+            {"device": content["device"], "backend": options.backend, "size": SIZE, "samples": options.samples, "rows": rows}
+        ),
     )
-

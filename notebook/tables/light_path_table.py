@@ -20,7 +20,14 @@ def light_path_table():
             yield with_interval(paired_ratio(series(row, "camera", error, "seconds"), series(row, "both", error, "seconds")))
 
     return table(
-        ["device", "side of the lamp", "relMSE of chapter 14", "relMSE of chapter 15", "gain where no glass is seen", "gain of the picture"],
+        [
+            "device",
+            "side of the lamp",
+            "relMSE of chapter 14",
+            "relMSE of chapter 15",
+            "gain where no glass is seen",
+            "gain of the picture",
+        ],
         [
             ["CPU" if record["backend"] == "native" else record["device"], f"{row['side']:g}", *cells(row)]
             for record in load_records("light_paths")
