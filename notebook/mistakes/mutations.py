@@ -33,7 +33,7 @@ from report.batch import run_all
 GOES_ON = True
 ENDLESS = 5  # seconds for a point of an experiment, most of which take a fifth of one: many changes make a loop endless
 LOOP, BOUNCES = "sample_loop.glsl", "extend_path.glsl"
-START = "if (!is_alive) path = start_path(start_sample(position, i, seed));"
+START = "path = start_path(start_sample(position, i, seed));"
 UNCHANGED = Path(__file__).with_name("unchanged.json")  # chapter's name -> variant -> why it changes nothing
 COUNTERPARTS = {"sin": "cos", "cos": "sin", "min": "max", "max": "min", "x": "y", "y": "x", "z": "y", "xy": "yz", "true": "false"}
 INVERSE = {
@@ -166,7 +166,7 @@ def kept_members(chapter):
         keeping = f"if (i != first) path.{member} = last.{member};"
         if member not in always:  # but in scenes with media
             keeping = f"\n#ifdef FEATURE_MEDIA\n{keeping}\n#endif\n"
-        changed = f"if (!is_alive) {{ Path last = path; {START.removeprefix('if (!is_alive) ')} {keeping} }}"
+        changed = f"{{ Path last = path; {START} {keeping} }}"
         found[f"{LOOP}: kept {member}"] = loops[0], plant(text_of(loops[0]), START, changed, LOOP)
     return found
 

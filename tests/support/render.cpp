@@ -35,8 +35,9 @@ namespace {
 
 // The abilities of an estimator's chapter; none for other estimators.
 Chapter chapter_of(const Estimator& estimator) {
-    const auto folder = (estimator.observed.empty() ? estimator.file : estimator.observed).parent_path();
-    return std::filesystem::exists(folder / "chapter.json") ? load_chapter(folder.filename().string()) : Chapter{};
+    const auto& file = estimator.observed.empty() ? estimator.file : estimator.observed;
+    const std::string name = file.parent_path().filename().string();
+    return std::ranges::count(chapter_folders(), name) > 0 ? load_chapter(name) : Chapter{};
 }
 
 }  // namespace
