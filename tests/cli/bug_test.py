@@ -138,7 +138,7 @@ class BugTest(Bugs, ProgramTest):
         self.assert_tool_refused(["bug", 3, 999], "bugs 1 to", "lists them")
         self.assert_tool_refused(["bug", 3, 0], "number from 1")
         self.assert_tool_refused(
-            ["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene", "one of check_glass, .*cornell_box"
+            ["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene", "one of caustics, .*cornell_box"
         )
 
     def test_a_chapter_without_bugs_says_so(self):
