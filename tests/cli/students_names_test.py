@@ -86,10 +86,10 @@ class StudentsPage:
         browser = self.enterContext(Browser())
         chapter = CHAPTERS[3]
         arrays, parameters, _, _ = live.dump(self.folder / "dump", chapter, SCENE, *LENGTH)
-        scripts = ["sources.js", *live.SCRIPTS[: live.SCRIPTS.index("renderer.js") + 1], "film.js"]
+        scripts = ["sources.js", *live.SCRIPTS[: live.SCRIPTS.index("renderer.js") + 1], "one_film.js"]
         for name in scripts[1:-1]:
             shutil.copy(live.HERE / name, self.folder)
-        shutil.copy(PROJECT / "tests/browser/film.js", self.folder)
+        shutil.copy(PROJECT / "tests/browser/one_film.js", self.folder)
         told = {"sources": live.shaders(), "scene": arrays, "words": parameters, "data": {}}
         (self.folder / "sources.js").write_text(f"var live = {json.dumps(told)};", encoding="utf-8")
         (self.folder / "page.html").write_text(
