@@ -137,9 +137,7 @@ class BugTest(Bugs, ProgramTest):
         self.assert_tool_refused(["bug", 99], "no chapter 99")
         self.assert_tool_refused(["bug", 3, 999], "bugs 1 to", "lists them")
         self.assert_tool_refused(["bug", 3, 0], "number from 1")
-        self.assert_tool_refused(
-            ["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene", "one of caustics, .*cornell_box"
-        )
+        self.assert_tool_refused(["bug", 3, 1, "--scene", "nothing"], "nothing: no such scene", "one of caustics, .*cornell_box")
 
     def test_a_chapter_without_bugs_says_so(self):
         with mock.patch.object(bug, "bugs_of", return_value=[]), self.assertRaisesRegex(UserError, "chapter 1 has no bugs"):
