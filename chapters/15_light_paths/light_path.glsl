@@ -33,7 +33,7 @@ bool extend_light_path(inout LightPath path, inout uvec2 seed) {
     if (!is_above_surface(s, s.out_direction)) return false;
     if (path.path_length == 1u && !s.is_dielectric) return false;  // light samples of camera paths find this light
 
-    if (!s.is_dielectric && is_counted(path.path_length)) 
+    if (!s.is_dielectric && is_counted(path.path_length))
         connect_to_camera(s, path.power * path.throughput, path.sample_index, seed);
 
     // Go on like a camera path, but without 1/η²: that belongs to radiance, and this is power.

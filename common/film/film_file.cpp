@@ -52,17 +52,6 @@ std::vector<uint32_t> counts(const ExrFile& exr, const std::string& name, size_t
 
 constexpr std::array<const char*, 3> differences{"difference.R", "difference.G", "difference.B"};
 
-// Not inlined: in loops over floats and doubles GCC 12 optimises this rounding away.
-[[gnu::noinline]] float to_float(double number) { return static_cast<float>(number); }
-
-// Splits a sum into the two floats from which the device continues.
-void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
-    for (int channel = 0; channel < 3; ++channel) {
-        pixel.sum[channel] = to_float(sum[channel]);
-        pixel.compensation[channel] = to_float(sum[channel] - double{pixel.sum[channel]});
-    }
-}
-
 }  // namespace
 
 void write_film(const std::filesystem::path& file, const FilmImage& image, const FilmHeader& header) {

@@ -27,6 +27,15 @@ glm::dvec2 sizes_of_halves(const FilmPixel& pixel) {
 
 }  // namespace
 
+[[gnu::noinline]] float to_float(double number) { return static_cast<float>(number); }
+
+void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
+    for (int channel = 0; channel < 3; ++channel) {
+        pixel.sum[channel] = to_float(sum[channel]);
+        pixel.compensation[channel] = to_float(sum[channel] - double{pixel.sum[channel]});
+    }
+}
+
 glm::dvec3 difference_of_halves(const FilmPixel& pixel) {
     if (pixel.sample_count < 2) return glm::dvec3(0);
     const glm::dvec2 sizes = sizes_of_halves(pixel);

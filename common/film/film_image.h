@@ -13,6 +13,12 @@ inline constexpr size_t pixels_per_piece = 1 << 16;  // per task of a thread
 // The sum of a pixel's samples, stored as two floats.
 inline glm::dvec3 sum_of(const FilmPixel& pixel) { return glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation); }
 
+// Stores a sum as two floats.
+void set_sum(FilmPixel& pixel, const glm::dvec3& sum);
+
+// Rounds. In loops over floats and doubles GCC 12 optimises a cast away.
+float to_float(double number);
+
 // The mean of the first, third, … sample minus that of the others: two independent estimates. 0 with fewer than two samples.
 glm::dvec3 difference_of_halves(const FilmPixel& pixel);
 // The variance of the mean of all samples, estimated from that difference.

@@ -12,17 +12,15 @@ constexpr size_t alignment = 64 * sizeof(FilmPixel);
 
 // Adds what light paths sent to a pixel.
 void add_splats(FilmPixel& pixel, const uint32_t* words, double unit) {
-    const auto number = [&](int half, int channel) {
-        const uint32_t* word = words + 6 * half + 2 * channel;
-        return unit * static_cast<double>(uint64_t{word[1]} << 32 | word[0]);
+    const auto half = [&](const uint32_t* word) {
+        const auto number = [&](int channel) {
+            return unit * static_cast<double>(uint64_t{word[2 * channel + 1]} << 32 | word[2 * channel]);
+        };
+        return glm::dvec3(number(0), number(1), number(2));
     };
-    for (int channel = 0; channel < 3; ++channel) {
-        const double first = number(0, channel), second = number(1, channel);
-        const double sum = first + second + double{pixel.sum[channel]} + double{pixel.compensation[channel]};
-        pixel.sum[channel] = static_cast<float>(sum);
-        pixel.compensation[channel] = static_cast<float>(sum - double{pixel.sum[channel]});
-        pixel.difference[channel] = static_cast<float>(double{pixel.difference[channel]} + (first - second));
-    }
+    const glm::dvec3 first = half(words), second = half(words + 6);
+    set_sum(pixel, sum_of(pixel) + first + second);
+    pixel.difference += vec3(first - second);
     pixel.invalid_count = std::min(pixel.invalid_count + words[SPLAT_WORDS - 1], pixel.sample_count);
 }
 

@@ -70,8 +70,9 @@ RenderParameters default_parameters(const Scene& scene, const CameraPose& camera
 }
 
 float splat_unit_of(const Scene& scene, Strategy strategy, const Capabilities& handles) {
+    if (!handles.light_paths || strategy == Strategy::bounces) return 0;
     const SceneFeatures features = features_of(scene);
-    if (!handles.light_paths || strategy == Strategy::bounces || !features.dielectrics || features.media) return 0;
+    if (!features.dielectrics || features.media) return 0;
     float brightest = 0;
     for (const Material& material : scene.materials)
         brightest = std::max({brightest, material.emission.r, material.emission.g, material.emission.b});

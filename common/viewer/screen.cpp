@@ -264,22 +264,26 @@ void Screen::keep_capture() {
     }
 }
 
+// The film with what light paths added, if they do.
+static ComputeKernel make_display_kernel(const Device& device, const Film& film, std::vector<Binding> bindings) {
+    ShaderSource source{.file = project_folder() / "shaders" / "engine/display.comp"};
+    bindings.push_back(film.binding());
+    if (const auto splats = film.splat_binding()) {
+        source.defines.emplace_back("SPLATS");
+        bindings.push_back(*splats);
+    }
+    return {device, source, bindings, sizeof(DisplayParameters)};
+}
+
 DisplayPass::DisplayPass(const Device& device, const Film& film, std::shared_ptr<StorageImage> picture)
     : device_(&device),
       film_(&film),
       picture_(std::move(picture)),
-      largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer) {
-    const auto splats = film.splat_binding();
-    std::vector<Binding> bindings{
-        film.binding(),
-        {.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture_->info()}},
-        storage_binding(BINDING_LARGEST_VALUE, largest_value_)};
-    if (splats) bindings.push_back(*splats);
-    kernel_.emplace(device,
-                    ShaderSource{.file = project_folder() / "shaders" / "engine/display.comp",
-                                 .defines = splats ? std::vector<std::string>{"SPLATS"} : std::vector<std::string>{}},
-                    bindings, sizeof(DisplayParameters));
-}
+      largest_value_(device, sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer),
+      kernel_(make_display_kernel(
+          device, film,
+          {{.index = BINDING_PICTURE, .type = vk::DescriptorType::eStorageImage, .images = {picture_->info()}},
+           storage_binding(BINDING_LARGEST_VALUE, largest_value_)})) {}
 
 void DisplayPass::record(const vk::raii::CommandBuffer& commands, DisplayTransform transform, float exposure) const {
     const bool is_radiance = transform == DisplayTransform::exposure;
@@ -310,7 +314,7 @@ void DisplayPass::record_parts(const vk::raii::CommandBuffer& commands, DisplayP
     for (uint32_t block = 0; block < film_blocks;) {
         const FilmWindow window = film_->window_from(block);
         parameters.first_film_pixel = window.first_pixel;
-        kernel_->record(commands, &parameters, groups, window.offset());
+        kernel_.record(commands, &parameters, groups, window.offset());
         block = window.end_block;
     }
 }

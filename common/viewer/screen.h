@@ -31,7 +31,7 @@ class DisplayPass {
     const Film* film_;
     std::shared_ptr<StorageImage> picture_;
     Buffer largest_value_;
-    std::optional<ComputeKernel> kernel_;
+    ComputeKernel kernel_;
 };
 
 // In pixels of the window's framebuffer.

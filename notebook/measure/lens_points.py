@@ -5,12 +5,12 @@ a point of its own for pixel and lens, and with chapter 2's polar map.
 
 All take turns, with another seed in each run. The errors are those that the halves of the samples tell.
 """
-import subprocess
 import tempfile
 import time
 from pathlib import Path
 
-from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
+from measure.turns import rendered
+from project import ROOT, Parser, number, show_progress, write_json
 from tables.sources import stamped
 
 CHAPTER, SHADER = "12_lens", "camera.glsl"
@@ -23,26 +23,18 @@ APERTURES, SAMPLES = (0.03, 0.1, 0.3), 1024
 
 def measure(shader, aperture, seed, folder):
     """Mean squared error by samples, of one picture."""
-    report = folder / "report.json"
-    subprocess.run(
-        [
-            program_file(CHAPTER),
-            "focus",
-            "--headless",
-            "--quiet",
-            "--width=150",
-            "--height=100",
-            f"--samples={SAMPLES}",
-            f"--seed={seed}",
-            "--max-path-length=1",
-            f"--aperture-diameter={aperture}",
-            f"--shader={SHADER}={shader}",
-            f"--output={folder / 'picture.exr'}",
-            f"--report={report}",
-        ],
-        check=True,
+    content = rendered(
+        CHAPTER,
+        "focus",
+        folder,
+        "--width=150",
+        "--height=100",
+        f"--samples={SAMPLES}",
+        f"--seed={seed}",
+        "--max-path-length=1",
+        f"--aperture-diameter={aperture}",
+        f"--shader={SHADER}={shader}",
     )
-    content = read_json(report)
     return content["device"], {str(row["samples"]): row["mse"] for row in content["rows"] if row["samples"] >= 16}
 
 

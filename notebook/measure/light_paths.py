@@ -7,13 +7,13 @@ chapter 15: of the whole picture, and of the pixels where the camera sees no gla
 backend native those of all processors together.
 """
 import json
-import subprocess
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
-from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
+from measure.turns import options_of, rendered
+from project import ROOT, read_json, show_progress, write_json
 from references.exr import Exr
 from references.images import Reference, read_rgb
 from tables.sources import stamped
@@ -47,21 +47,15 @@ def widened(mask):
 
 
 def main():
-    parser = Parser("./lab notebook light_paths", __doc__)
-    parser.add_argument("--runs", type=number(int, 2), default=4, help="default: 4")
-    parser.add_argument("--backend", default="native", help="default: native")
-    parser.add_argument("--samples", type=number(int, 2), default=128, help="per pixel; default: 128")
-    parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/light_paths/native.json", metavar="FILE.json")
-    options, rows, started = parser.parse_args(), [], time.monotonic()
-    seconds = "cpu_seconds" if options.backend == "native" else "device_seconds"
+    options = options_of("light_paths", __doc__, 4, 128, ROOT / "notebook/records/light_paths/native.json")
+    rows, started = [], time.monotonic()
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        picture, report = folder / "picture.exr", folder / "report.json"
+        folder, picture = Path(name), Path(name) / "picture.exr"
 
         def render(chapter, samples, seed, *others):
-            command = [program_file(CHAPTERS[chapter]), folder / "scene.json", "--headless", "--quiet", f"--samples={samples}"]
-            command += [f"--width={SIZE}", f"--height={SIZE}", f"--seed={seed}", f"--output={picture}", *others]
-            subprocess.run(command, check=True)
+            size = [f"--width={SIZE}", f"--height={SIZE}"]
+            numbers = [f"--samples={samples}", f"--seed={seed}"]
+            return rendered(CHAPTERS[chapter], folder / "scene.json", folder, *size, *numbers, *others)
 
         for side in SIDES:
             write_scene(side, folder)
@@ -72,12 +66,11 @@ def main():
             found = {chapter: {"rel_mse": [], "rel_mse_of_matte": [], "seconds": []} for chapter in CHAPTERS}
             for run in range(options.runs):
                 for chapter, numbers in found.items():
-                    render(chapter, options.samples, 1 + run, f"--backend={options.backend}", f"--report={report}")
+                    content = render(chapter, options.samples, 1 + run, f"--backend={options.backend}")
                     errors = (weights * Exr(picture).rgb("difference.") ** 2).mean(axis=2)
                     numbers["rel_mse"].append(float(errors.mean()))
                     numbers["rel_mse_of_matte"].append(float(errors[~sees_glass].mean()))
-                    content = read_json(report)
-                    numbers["seconds"].append(content["rows"][-1][seconds])
+                    numbers["seconds"].append(content["rows"][-1][options.seconds])
                 show_progress("light_paths", len(rows) * options.runs + run + 1, len(SIDES) * options.runs, started)
             rows.append({"side": side, "matte": float(np.mean(~sees_glass)), **found})
     write_json(

@@ -5,12 +5,12 @@
 All take turns, with another seed in each run. The errors of all light are those against the reference, the others those that the halves
 of the samples tell.
 """
-import subprocess
 import tempfile
 import time
 from pathlib import Path
 
-from project import ROOT, Parser, number, program_file, read_json, show_progress, write_json
+from measure.turns import rendered
+from project import ROOT, Parser, number, show_progress, write_json
 from tables.sources import stamped
 
 CHAPTER = "13_media"
@@ -34,32 +34,24 @@ def main():
     parser.add_argument("--output", type=Path, default=ROOT / "notebook/records/media/native.json", metavar="FILE.json")
     options, rows, started = parser.parse_args(), [], time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder) / "report.json"
         for light, chosen in LIGHT.items():
             products = {way: [] for way in WAYS}
             for run in range(options.runs):
                 for way, found in products.items():
-                    subprocess.run(
-                        [
-                            program_file(CHAPTER),
-                            "fog",
-                            "--headless",
-                            "--quiet",
-                            "--backend=native",
-                            "--width=192",
-                            "--height=128",
-                            "--samples=64",
-                            f"--seed={1 + run}",
-                            *WAYS[way],
-                            *chosen,
-                            f"--output={folder}/picture.exr",
-                            f"--report={report}",
-                        ],
-                        check=True,
+                    report = rendered(
+                        CHAPTER,
+                        "fog",
+                        Path(folder),
+                        "--backend=native",
+                        "--width=192",
+                        "--height=128",
+                        "--samples=64",
+                        f"--seed={1 + run}",
+                        *WAYS[way],
+                        *chosen,
                     )
-                    row = read_json(report)["rows"][-1]
+                    row = report["rows"][-1]
                     found.append(row["mse"] * row["cpu_seconds"])
                 show_progress("media_strategies", len(rows) * options.runs + run + 1, len(LIGHT) * options.runs, started)
             rows.append({"light": light, "mse_times_cpu_seconds": products})
-        device = read_json(report)["device"]
-    write_json(options.output, stamped({"device": device, "scene": "fog", "rows": rows}))
+    write_json(options.output, stamped({"device": report["device"], "scene": "fog", "rows": rows}))
