@@ -41,6 +41,8 @@ bool extend_path(inout Path path, inout uvec2 seed) {
                          get_bounce_part(light_density, path.bounce_density) * s.emission;
     if (path.path_length == parameters.max_path_length || !is_above_surface(s, s.out_direction)) return false;
 
+    count_scattering(s, path.radiance);
+
     // The direct light at x_k arrives after one more bounce.
     path.receiver = get_receiver(s);
     if (path.receiver.is_light_sampled) {

@@ -12,6 +12,7 @@
 #include "sample_bsdf.glsl"
 #include "choose_light.glsl"
 #include "partition.glsl"
+#include "count_scattering.glsl"
 #include "weights.glsl"
 
 // Light samples go to the light triangles. The background is left to bounces.

@@ -9,6 +9,7 @@
 #include "sample_bsdf.glsl"
 #include "choose_light.glsl"
 #include "partition.glsl"
+#include "count_scattering.glsl"
 #include "07_multiple_importance_sampling/weights.glsl"
 #include "light_probe_sampling.glsl"
 #include "extend_path.glsl"

@@ -90,6 +90,8 @@ bool extend_path(inout Path path, inout uvec2 seed) {
     }
     if (path.path_length == parameters.max_path_length || path.throughput == vec3(0.0)) return false;
 
+    count_scattering(s, path.radiance);
+
     // The direct light at x_k, at a surface or in the medium.
     path.receiver = get_receiver(s);
     if (path.receiver.is_light_sampled) add_light(path, 1u, sample_scattered_light(s, sides, seed));

@@ -30,6 +30,7 @@ ShadingData get_medium_point(vec3 position, vec3 ray_direction) {
     s.normal = vec3(0.0);
     s.geometric_normal = vec3(0.0);
     s.offset = 0.0;
+    s.material = NO_MATERIAL;
     s.is_dielectric = false;
     return s;
 }

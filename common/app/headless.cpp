@@ -196,7 +196,7 @@ class HeadlessRender {
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = header_.seconds - job_.header.seconds;
-        const bool shows_radiance = !job_.options.image.view;
+        const bool shows_radiance = job_.shown_instead.empty(), shows_light = !job_.options.image.view;
         const bool is_last_row = !rows_.empty() && rows_.back().rays == header_.rays;
         const std::optional<ErrorMetrics> error = is_last_row ? rows_.back().error : find_error();
         // Pixels are independent. Against a reference the error would include bias.
@@ -211,7 +211,7 @@ class HeadlessRender {
         std::printf("acceleration   structure of %s bytes, built in %s\n",
                     short_number(static_cast<double>(scene_backend_.bytes())).c_str(),
                     duration_text(scene_backend_.build_seconds()).c_str());
-        if (error && shows_radiance)
+        if (error && shows_light)
             std::printf("%-15s%.3g %% (root of the relative mean squared error, %s)\n", reference_ ? "error" : "noise",
                         100 * error->rel_rmse, reference_ ? "against the reference" : "estimated; a bias does not show in it");
         if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());

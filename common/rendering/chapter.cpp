@@ -57,8 +57,9 @@ std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::st
     std::vector<ChapterChoice> choices;
     if (!chapter.has("choices")) return choices;
     for (const nlohmann::json& content : chapter.array("choices")) {
-        const JsonObject choice(content, file, "a choice", {"name", "help", "values"});
-        choices.push_back({choice.required("name", choice.text("name")), choice.required("help", choice.text("help")), {}});
+        const JsonObject choice(content, file, "a choice", {"name", "help", "values", "shows"});
+        choices.push_back({choice.required("name", choice.text("name")), choice.required("help", choice.text("help")), {},
+                           choice.text("shows").value_or("")});
         if (!choices.back().name.starts_with("--")) choice.fail("name", "must begin with --");
         for (const nlohmann::json& value : choice.array("values")) {
             if (!value.is_array() || value.size() != 2 || !value[0].is_string() || !value[1].is_string())

@@ -92,6 +92,13 @@ size_t value_of(const ChapterChoice& choice, const Options& options) {
     return given == options.estimator.choices.end() ? 0 : given->second;
 }
 
+std::string shown_instead(const Chapter& chapter, const Options& options) {
+    if (options.image.view) return "the view " + options.image.view->name;
+    for (const ChapterChoice& choice : chapter.choices)
+        if (value_of(choice, options) > 0 && !choice.shows.empty()) return choice.shows;
+    return {};
+}
+
 Strategy strategy_of(const Chapter& chapter, const Options& options) {
     if (chapter.strategies.empty()) return Strategy::bounces;
     return options.estimator.strategy.value_or(chapter.strategies.front());

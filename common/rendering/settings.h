@@ -34,6 +34,9 @@ Estimator estimator_of(const Chapter& chapter);
 // The index of the value that these options give one of the chapter's choices.
 size_t value_of(const ChapterChoice& choice, const Options& options);
 
+// What the picture shows under these options instead of radiance; empty if it shows radiance.
+std::string shown_instead(const Chapter& chapter, const Options& options);
+
 // How the chapter's estimator finds light under these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);
 

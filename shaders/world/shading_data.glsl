@@ -1,3 +1,5 @@
+const uint NO_MATERIAL = 0xffffffffu;
+
 // What an estimator needs to know about the point x_k that a ray hits.
 struct ShadingData {
     vec3 position;          // x_k, in scene units
@@ -10,7 +12,7 @@ struct ShadingData {
 #ifdef FEATURE_LIGHT_TREE
     uint light;  // place of the triangle in light_leaves, if it emits
 #endif
-    uint material;          // index into the scene's materials
+    uint material;          // index into the scene's materials, or NO_MATERIAL in a medium
     vec3 diffuse_albedo;    // in [0,1]: the fraction of light that is reflected diffusely, per colour channel
 #ifdef FEATURE_SPECULAR
     vec3 specular_albedo;     // fraction of light that the Phong lobe reflects, per colour channel, in [0,1]

@@ -1,0 +1,125 @@
+// Chapter 17: the derivative of the picture with respect to an albedo equals closed forms, and differences of pictures.
+#include <cmath>
+#include <optional>
+
+#include "support/agreement.h"
+#include "support/expect_statistics.h"
+#include "support/scenes.h"
+
+namespace lab {
+namespace {
+
+constexpr uint32_t derivative_batches = 16;
+
+// Renders the derivative with respect to the logarithm of this material's albedo, or the picture.
+RenderSettings derivative_settings(std::optional<uint32_t> material) {
+    RenderSettings settings{.width = 48,
+                            .height = 48,
+                            .samples = 64,
+                            .max_path_length = 6,
+                            .roulette_start = 3,
+                            .survival_weight = 0.5f,
+                            .estimator = chapter_estimator(chapter_named("derivatives")),
+                            .backend = fastest_backend()};
+    if (material) settings.estimator.defines.push_back("DERIVATIVE " + std::to_string(*material) + "u");
+    return settings;
+}
+
+// In a closed surface of albedo a and emission 1 the light of k bounces is a^k, and its derivative k a^k.
+TEST(Derivatives, OfAFurnaceAreTheSeries) {
+    const vec3 albedo(0.2f, 0.5f, 0.8f);
+    RenderSettings settings = derivative_settings(0);
+    settings.strategy = Strategy::bounces;
+    settings.max_path_length = 8;
+    settings.samples = 400;
+    const FilmImage film = render(closed_box(diffuse_material(albedo, vec3(1))), settings);
+    for (int channel = 0; channel < 3; ++channel) {
+        double expected = 0;
+        for (int k = 1; k <= 8; ++k) expected += k * std::pow(double{albedo[channel]}, k);
+        expect_mean(channel_names[static_cast<size_t>(channel)], estimate_mean(pixel_means(film, channel)), expected, 0.003, 3);
+    }
+}
+
+// Of light that it alone scatters, once, it is that light, to the bit: x - 0 and 1 x are exact.
+TEST(Derivatives, OfDirectLightAreThatLight) {
+    Scene scene = load_shipped_scene("cornell_box.json");
+    for (uint32_t& material : scene.triangle_materials)
+        if (scene.materials[material].emission == vec3(0)) material = 0;
+    const auto direct_light = [&](std::optional<uint32_t> material) {
+        RenderSettings settings = derivative_settings(material);
+        settings.only_path_length = 1;
+        settings.max_path_length = 1;
+        return render(scene, settings).mean().pixels;
+    };
+    EXPECT_EQ(direct_light(0), direct_light({}));
+}
+
+// A black material has no derivative with respect to the logarithm of its albedo, and no invalid samples.
+TEST(Derivatives, OfABlackMaterialAreZero) {
+    Scene scene = load_shipped_scene("cornell_box.json");
+    scene.materials[1].diffuse_albedo = vec3(0);
+    for (const float value : render(scene, derivative_settings(1)).mean().pixels) ASSERT_EQ(value, 0);
+}
+
+// The sum over all materials: the number of scatterings, weighted by the light. It is Σ k L_k of the light of k bounces.
+TEST(Derivatives, AddUpToTheNumberOfScatterings) {
+    const Scene scene = load_shipped_scene("cornell_box.json");
+    std::vector<std::vector<double>> sums(3, std::vector<double>(derivative_batches, 0));
+    for (uint32_t material = 0; material < scene.materials.size(); ++material) {
+        const Batches batches = render_batches(scene, derivative_settings(material), derivative_batches);
+        for (int channel = 0; channel < 3; ++channel) {
+            const std::vector<double> means = batches.means(channel);
+            for (size_t i = 0; i < means.size(); ++i) sums[static_cast<size_t>(channel)][i] += means[i];
+        }
+    }
+    std::vector<double> expected(3, 0);
+    for (int k = 1; k <= 6; ++k) {
+        RenderSettings settings = derivative_settings({});
+        settings.only_path_length = k;
+        settings.samples = 1024;
+        const std::array<double, 3> mean = render(scene, settings).mean_radiance();
+        for (size_t channel = 0; channel < 3; ++channel) expected[channel] += k * mean[channel];
+    }
+    for (size_t channel = 0; channel < 3; ++channel)
+        expect_mean(channel_names[channel], estimate_mean(sums[channel]), expected[channel], 0.01, 3);
+}
+
+// Equal to the difference of two pictures whose albedos are a little larger and smaller.
+struct DerivativeCase {
+    std::string scene;
+    uint32_t samples;
+    Run run;
+};
+class DerivativesOf : public testing::TestWithParam<DerivativeCase> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, DerivativesOf,
+                         testing::Values(DerivativeCase{"cornell_box", 64, Run::always}, DerivativeCase{"smoke", 64, Run::always},
+                                         DerivativeCase{"studio", 512, Run::with_all}, DerivativeCase{"glass", 512, Run::with_all},
+                                         DerivativeCase{"glossy", 1024, Run::with_all}),
+                         [](const auto& info) { return instance_name(info.param.scene, info.param.run); });
+
+TEST_P(DerivativesOf, AreDifferencesOfPictures) {
+    const Scene scene = load_shipped_scene(GetParam().scene + ".json");
+    const auto settings_of = [](std::optional<uint32_t> material) {
+        RenderSettings settings = derivative_settings(material);
+        settings.samples = GetParam().samples;
+        return settings;
+    };
+    const Batches derivative = render_batches(scene, settings_of(0), derivative_batches);
+    // The third derivative leaves an error of h² k² / 6 of the light that is scattered k times.
+    constexpr float h = 0.03f;
+    const auto render_with = [&](float factor) {
+        Scene changed = scene;
+        changed.materials[0].diffuse_albedo *= factor;
+        changed.materials[0].specular_albedo *= factor;
+        return render_batches(changed, settings_of({}), derivative_batches);
+    };
+    Batches difference = render_with(std::exp(h));
+    const Batches darker = render_with(std::exp(-h));
+    for (size_t i = 0; i < difference.images.size(); ++i)
+        for (size_t pixel = 0; pixel < difference.images[i].size(); ++pixel)
+            difference.images[i][pixel] = (difference.images[i][pixel] - darker.images[i][pixel]) / (2.0 * h);
+    expect_agreement(GetParam().scene, derivative, difference, {0.02, 0.5});
+}
+
+}  // namespace
+}  // namespace lab
