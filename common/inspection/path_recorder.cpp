@@ -200,9 +200,10 @@ PathRecorder::PathRecorder(const Device& device, const SceneBackend& scene_backe
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent), vk::BufferUsageFlagBits::eStorageBuffer) {
-    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
-                                        storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
-                                        storage_binding(BINDING_RECORDED_PATH, events_)};
+    std::vector<Binding> bindings = film_.bindings();
+    bindings.push_back(uniform_binding(BINDING_RENDER_PARAMETERS, parameters_));
+    bindings.push_back(storage_binding(BINDING_RAY_COUNTERS, ray_counters_));
+    bindings.push_back(storage_binding(BINDING_RECORDED_PATH, events_));
     tracer_ = scene_backend.make_tracer(recording(estimator), bindings);
 }
 
