@@ -56,12 +56,18 @@ class PathBuilder {
                 case EVENT_RADIANCE:
                     add_radiance(event);
                     break;
+                case EVENT_SPLAT:
+                    add_splat(event);
+                    break;
                 case EVENT_SURVIVAL:
                     end_roulette();
                     survival_probability_ = event.value.x;
                     break;
-                default:
+                case EVENT_RESULT:
                     path_.radiance = event.value;
+                    break;
+                default:  // EVENT_START
+                    break;
             }
         }
         end_roulette();
@@ -159,6 +165,14 @@ class PathBuilder {
         is_light_sampled_ = false;
     }
 
+    // What the latest light sample adds, even if no variable `radiance` has said so before.
+    void add_splat(const RecordedEvent& event) {
+        if (site_ < 0 || site().light_samples.empty()) return;
+        vec3& radiance = site().light_samples.back().radiance;
+        site().radiance += event.value - radiance;
+        radiance = event.value;
+    }
+
     // No ray followed this survival probability: the path has ended.
     void end_roulette() {
         if (survival_probability_ && site_ >= 0) site().lost_roulettes.push_back(*survival_probability_);
@@ -181,10 +195,16 @@ class PathBuilder {
 
 }  // namespace
 
-RecordedPath path_of(std::span<const RecordedEvent> events) { return PathBuilder(events).build(); }
+RecordedPath path_of(std::span<const RecordedEvent> events) {
+    const auto is_start = [](const RecordedEvent& event) { return event.kind == EVENT_START; };
+    const auto begin = std::find_if(events.rbegin(), events.rend(), is_start).base();
+    RecordedPath path = PathBuilder({begin, events.end()}).build();
+    path.light_path = PathBuilder({events.begin(), begin}).build().vertices;
+    return path;
+}
 
 Estimator recording(const Estimator& estimator) {
-    return {.file = project_folder() / "shaders" / "observation" / "record_path.glsl",
+    return {.file = project_folder() / "shaders" / "observation" / "record_path" / "path_trace.glsl",
             .defines = estimator.defines,
             .observed = estimator.file,
             .edit = [further = estimator.edit](const std::string& text) {
@@ -193,17 +213,21 @@ Estimator recording(const Estimator& estimator) {
             }};
 }
 
-PathRecorder::PathRecorder(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator, uvec2 image_size)
+PathRecorder::PathRecorder(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator,
+                           const RenderParameters& parameters)
     : estimator_(estimator),
       // The samples go into a single row of blocks, wherever the pixel is in the image.
-      film_(device, image_size.x, BLOCK_HEIGHT),
+      film_(device, parameters.image_size.x, BLOCK_HEIGHT),
       parameters_(device, sizeof(RenderParameters), vk::BufferUsageFlagBits::eUniformBuffer),
       ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       events_(device, sizeof(Header) + max_events * sizeof(RecordedEvent), vk::BufferUsageFlagBits::eStorageBuffer) {
-    const std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
-                                        storage_binding(BINDING_RAY_COUNTERS, ray_counters_),
-                                        storage_binding(BINDING_RECORDED_PATH, events_)};
-    tracer_ = scene_backend.make_tracer(recording(estimator), bindings);
+    std::vector<Binding> bindings = film_.bindings();
+    bindings.push_back(uniform_binding(BINDING_RENDER_PARAMETERS, parameters_));
+    bindings.push_back(storage_binding(BINDING_RAY_COUNTERS, ray_counters_));
+    bindings.push_back(storage_binding(BINDING_RECORDED_PATH, events_));
+    Estimator configured = recording(estimator);
+    if (parameters.splat_unit > 0) configured.defines.emplace_back("SPLATS");
+    tracer_ = scene_backend.make_tracer(configured, bindings);
 }
 
 RecordedPath PathRecorder::record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample) {

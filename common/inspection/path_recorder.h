@@ -49,8 +49,11 @@ struct PathVertex {
 struct RecordedPath {
     vec3 radiance{0};                  // contribution of the sample to the film
     std::vector<PathVertex> vertices;  // in the order of their rays; a parent comes before its children
-    bool is_complete = true;           // false: there was not enough room for all of it
-    bool has_throughput = false;       // whether the estimator has a variable of that name
+    // Of the path from a lamp beside it, in the same order, if there is one: its light samples go to the camera, and their
+    // radiance to the pixel that sees them.
+    std::vector<PathVertex> light_path;
+    bool is_complete = true;      // false: there was not enough room for all of it
+    bool has_throughput = false;  // whether the estimator has a variable of that name
 };
 
 // The path that events make. `is_complete` is left to the recorder.
@@ -59,10 +62,11 @@ RecordedPath path_of(std::span<const RecordedEvent> events);
 class PathRecorder {
   public:
     // Device and acceleration structure must outlive it. Throws UserError if the estimator does not compile.
-    PathRecorder(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator, uvec2 image_size);
+    PathRecorder(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator,
+                 const RenderParameters& parameters);
 
-    // Records the sample with this index (counted from first_sample), for the constructor's image size. Its values are those of a
-    // render with these parameters on the same backend. Throws StuckLoop as Renderer::advance() does.
+    // Records the sample with this index (counted from first_sample), with the constructor's image_size and splat_unit. Its
+    // values are those of a render with these parameters on the same backend. Throws StuckLoop as Renderer::advance() does.
     RecordedPath record(const RenderParameters& parameters, uvec2 pixel, uint32_t sample);
 
   private:

@@ -65,13 +65,14 @@ Film::Film(const Device& device, uint32_t width, uint32_t height, size_t max_win
     clear();
 }
 
-Binding Film::binding() const {
-    return buffer_binding(BINDING_FILM, vk::DescriptorType::eStorageBufferDynamic, buffer_, window_size_);
-}
+std::vector<Binding> Film::bindings() const { return bind(buffer_, splats_); }
 
-std::optional<Binding> Film::splat_binding() const {
-    if (!splats_) return {};
-    return storage_binding(BINDING_SPLATS, *splats_);
+std::vector<Binding> Film::bindings_of_picture() const { return splats_ ? bind(*kept_, kept_splats_) : bindings(); }
+
+std::vector<Binding> Film::bind(const Buffer& pixels, const std::optional<Buffer>& splats) const {
+    std::vector<Binding> bindings{buffer_binding(BINDING_FILM, vk::DescriptorType::eStorageBufferDynamic, pixels, window_size_)};
+    if (splats) bindings.push_back(storage_binding(BINDING_SPLATS, *splats));
+    return bindings;
 }
 
 FilmWindow Film::window_from(uint32_t block) const {

@@ -33,9 +33,10 @@ class Film {
 
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
-    // Binds a window, at an offset given with each dispatch.
-    Binding binding() const;
-    std::optional<Binding> splat_binding() const;  // if light paths add anything
+    // Bind a window, at an offset given with each dispatch, and what light paths add, if anything: to add samples, or to show
+    // what read() returns.
+    std::vector<Binding> bindings() const;
+    std::vector<Binding> bindings_of_picture() const;
     float splat_unit() const { return splat_unit_; }
     FilmWindow window_from(uint32_t block) const;
 
@@ -49,6 +50,8 @@ class Film {
     void write(const FilmImage& image);  // of the same size
 
   private:
+    std::vector<Binding> bind(const Buffer& pixels, const std::optional<Buffer>& splats) const;
+
     uint32_t width_;
     uint32_t height_;
     Buffer buffer_;

@@ -95,16 +95,14 @@ Renderer::Renderer(const Device& device, const SceneBackend& scene_backend, cons
       ray_counters_(device, ray_counters_size, vk::BufferUsageFlagBits::eStorageBuffer, Buffer::Location::host),
       film_(device, parameters.image_size.x, parameters.image_size.y, max_film_window, parameters.splat_unit) {
     Estimator configured = estimator;
-    std::vector<Binding> bindings{uniform_binding(BINDING_RENDER_PARAMETERS, parameters_), film_.binding(),
-                                  storage_binding(BINDING_RAY_COUNTERS, ray_counters_)};
+    if (film_.splat_unit() > 0) configured.defines.emplace_back("SPLATS");
+    std::vector<Binding> bindings = film_.bindings();
+    bindings.push_back(uniform_binding(BINDING_RENDER_PARAMETERS, parameters_));
+    bindings.push_back(storage_binding(BINDING_RAY_COUNTERS, ray_counters_));
     if (are_pixels_shared(parameters.image_size) && estimator.max_threads_per_pixel > 1 && scene_backend.can_share_pixels()) {
         samples_.emplace(device, memory_need_of_samples());
         configured.defines.emplace_back("SHARED_PIXELS");
         bindings.push_back(storage_binding(BINDING_SAMPLES, *samples_));
-    }
-    if (const auto splats = film_.splat_binding()) {
-        configured.defines.emplace_back("SPLATS");
-        bindings.push_back(*splats);
     }
     bindings.insert(bindings.end(), further_bindings.begin(), further_bindings.end());
     tracer_ = scene_backend.make_tracer(configured, bindings);

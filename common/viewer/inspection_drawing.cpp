@@ -79,29 +79,42 @@ void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, co
         for (const LightSample& light : vertices[chosen].light_samples)
             for (size_t i = 0; i < light.branch.size(); ++i)
                 draw_sphere(light.branch[i], IM_COL32(90, 230, 110, 80 + 175 * (i + 1) / light.branch.size()), draw_line);
-    for (const PathVertex& vertex : vertices)
-        for (const LightSample& light : vertex.light_samples)
-            draw_line(light.start, light.point.value_or(far_away(light.start, light.direction)),
-                      light.is_visible ? IM_COL32(255, 220, 60, 200) : IM_COL32(120, 120, 120, 200), 1);
+    const auto draw_shadow_rays = [&](const std::vector<PathVertex>& of_path, uint32_t colour) {
+        for (const PathVertex& vertex : of_path)
+            for (const LightSample& light : vertex.light_samples)
+                draw_line(light.start, light.point.value_or(far_away(light.start, light.direction)),
+                          light.is_visible ? colour : IM_COL32(120, 120, 120, 200), 1);
+    };
+    const auto draw_ray = [&](const PathVertex& vertex, const vec3& start, uint32_t colour) {
+        draw_line(start, vertex.is_in_scene() ? vertex.position : far_away(start, vertex.direction), colour, 2);
+    };
+    const auto draw_dot = [&](const PathVertex& vertex, const std::string& name, float radius, uint32_t colour) {
+        const auto position = vertex.is_in_scene() ? project(camera, vertex.position) : std::nullopt;
+        if (!position) return;
+        const ImVec2 at = placement.at(*position);
+        list.AddCircleFilled(at, radius, colour);
+        const ImVec2 corner(at.x + 7, at.y - 0.5f * ImGui::GetFontSize()), size = ImGui::CalcTextSize(name.c_str());
+        list.AddRectFilled({corner.x - 2, corner.y}, {corner.x + size.x + 2, corner.y + size.y}, IM_COL32(0, 0, 0, 160));
+        list.AddText(corner, colour, name.c_str());
+    };
+    draw_shadow_rays(path.light_path, light_path_colour);
+    for (size_t i = 0; i < path.light_path.size(); ++i) {
+        const PathVertex& vertex = path.light_path[i];
+        draw_ray(vertex, vertex.parent < 0 ? vertex.origin : path.light_path[static_cast<size_t>(vertex.parent)].position,
+                 light_path_colour);
+        draw_dot(vertex, "y" + std::to_string(i + 1), 4, light_path_colour);
+    }
+    draw_shadow_rays(vertices, IM_COL32(255, 220, 60, 200));
     for (const PathVertex& vertex : vertices) {
         if (vertex.parent < 0) {  // a pinhole's own ray is a single point in the picture
             if (camera.aperture_radius > 0 && vertex.is_in_scene()) draw_lens(list, placement, camera, vertex);
             continue;
         }
-        const vec3 start = vertices[static_cast<size_t>(vertex.parent)].position;
-        const vec3 end = vertex.is_in_scene() ? vertex.position : far_away(start, vertex.direction);
-        draw_line(start, end, blue, 2);
+        draw_ray(vertex, vertices[static_cast<size_t>(vertex.parent)].position, blue);
     }
     for (size_t i = 0; i < vertices.size(); ++i) {
-        const auto position = vertices[i].is_in_scene() ? project(camera, vertices[i].position) : std::nullopt;
-        if (!position) continue;
         const uint32_t colour = i == chosen ? IM_COL32(255, 80, 200, 255) : vertices[i].is_collision ? collision_green : blue;
-        const ImVec2 at = placement.at(*position);
-        list.AddCircleFilled(at, i == chosen ? 6.0f : 4.0f, colour);
-        const std::string name = "x" + std::to_string(i + 1);
-        const ImVec2 corner(at.x + 7, at.y - 0.5f * ImGui::GetFontSize()), size = ImGui::CalcTextSize(name.c_str());
-        list.AddRectFilled({corner.x - 2, corner.y}, {corner.x + size.x + 2, corner.y + size.y}, IM_COL32(0, 0, 0, 160));
-        list.AddText(corner, colour, name.c_str());
+        draw_dot(vertices[i], "x" + std::to_string(i + 1), i == chosen ? 6.0f : 4.0f, colour);
     }
     list.PopClipRect();
 }

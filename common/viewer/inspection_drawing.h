@@ -17,9 +17,13 @@ struct Placement {
     glm::vec2 corner, size;
 };
 
+inline constexpr uint32_t light_path_colour = IM_COL32(255, 140, 40, 255);
+
 // Draws a path over the picture: rays in blue, light samples in yellow or, if occluded, grey; the chosen vertex is highlighted.
 // Green are collisions in a medium and the nodes of the light tree that lead to the chosen vertex's light samples, the smaller
-// the brighter. A lens blurs the first hit to a disc, which is drawn with the ray from its pixel.
+// the brighter. The light path beside it is orange, from the lamp to where it ends; hits that the camera sees are dots of the
+// same colour, for a ray to a pinhole is a single point in the picture. A lens blurs the first hit to a disc, which is drawn with
+// the ray from its pixel.
 void draw_path(const RecordedPath& path, const Camera& camera, size_t chosen, const Rectangle& picture);
 
 // Draws a disc of HemisphereView times a factor, at reduced resolution for speed.

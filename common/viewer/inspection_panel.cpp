@@ -37,6 +37,31 @@ const PathVertex* first_seen(const RecordedPath& path, const Scene& scene) {
     return nullptr;
 }
 
+// What a path did at one of its hits.
+void list_vertex(const PathVertex& vertex, bool is_weighted, bool is_of_light_path) {
+    if (vertex.survival_probability) ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
+    if (is_weighted) text_colour("throughput", vertex.throughput);
+    if (vertex.is_collision) {
+        text_point("collides in the medium, at", vertex.position);
+    } else if (vertex.is_hit) {
+        text_point("position", vertex.position);
+        text_point("normal", vertex.normal);
+    } else {
+        text_point("leaves the scene towards", vertex.direction);
+    }
+    for (const LightSample& light : vertex.light_samples) {
+        const char* sample = light.point ? "light sample at" : "light sample of the sky, towards";
+        text_point(is_of_light_path ? "seen from the camera, at" : sample, light.point.value_or(light.direction));
+        if (light.is_visible)
+            text_colour("  visible: adds", light.radiance);
+        else
+            ImGui::TextUnformatted("  hidden: adds nothing");
+        if (!light.branch.empty()) ImGui::Text("  by %zu nodes of the tree (green)", light.branch.size());
+    }
+    if (vertex.radiance != vec3(0) && !is_of_light_path) text_colour("radiance found", vertex.radiance);
+    for (const float probability : vertex.lost_roulettes) ImGui::Text("Russian roulette: ended, survival %.3g", probability);
+}
+
 }  // namespace
 
 int InspectionPanel::height() const {
@@ -190,28 +215,12 @@ void InspectionPanel::draw_vertices() {
         std::snprintf(title, sizeof title, vertex.parent < 0 ? "x%zu, seen by the camera" : "x%zu, after x%d", i + 1,
                       vertex.parent + 1);
         if (ImGui::Selectable(title, i == selection.vertex)) selection.vertex = i;
-        if (vertex.survival_probability) ImGui::Text("survived with probability %.3g", *vertex.survival_probability);
-        if (is_weighted) text_colour("throughput", vertex.throughput);
-        if (vertex.is_collision) {
-            text_point("collides in the medium, at", vertex.position);
-        } else if (vertex.is_hit) {
-            text_point("position", vertex.position);
-            text_point("normal", vertex.normal);
-        } else {
-            text_point("leaves the scene towards", vertex.direction);
-        }
-        for (const LightSample& light : vertex.light_samples) {
-            text_point(light.point ? "light sample at" : "light sample of the sky, towards",
-                       light.point.value_or(light.direction));
-            if (light.is_visible)
-                text_colour("  visible: adds", light.radiance);
-            else
-                ImGui::TextUnformatted("  hidden: adds nothing");
-            if (!light.branch.empty()) ImGui::Text("  by %zu nodes of the tree (green)", light.branch.size());
-        }
-        if (vertex.radiance != vec3(0)) text_colour("radiance found", vertex.radiance);
-        for (const float probability : vertex.lost_roulettes) ImGui::Text("Russian roulette: ended, survival %.3g", probability);
+        list_vertex(vertex, is_weighted, false);
         ImGui::PopID();
+    }
+    for (size_t i = 0; i < path.light_path.size(); ++i) {
+        ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(light_path_colour), "y%zu, bounce %zu of the light path", i + 1, i + 1);
+        list_vertex(path.light_path[i], is_weighted, true);
     }
 }
 
@@ -292,15 +301,16 @@ bool Inspection::have_tools(const Session& session) {
                                                       .scene_backend = build.scene_backend,
                                                       .estimator = estimator,
                                                       .hash = hash,
-                                                      .image_size = build.job.parameters.image_size});
+                                                      .parameters = build.job.parameters});
     if (tools_ && tools_->scene_backend == wanted->scene_backend && tools_->hash == hash &&
-        tools_->image_size == wanted->image_size)
+        tools_->parameters.image_size == wanted->parameters.image_size &&
+        tools_->parameters.splat_unit == wanted->parameters.splat_unit)
         return true;
     if (hash == failed_hash_) return false;
     work_hash_ = hash;
     work_.start([&device = device_, wanted] {
         const SceneBackend& scene_backend = *wanted->scene_backend;
-        wanted->recorder = std::make_unique<PathRecorder>(device, scene_backend, wanted->estimator, wanted->image_size);
+        wanted->recorder = std::make_unique<PathRecorder>(device, scene_backend, wanted->estimator, wanted->parameters);
         wanted->hemisphere = std::make_unique<HemisphereView>(device, scene_backend, wanted->estimator);
         if (descends_light_tree(*wanted->gpu_scene, wanted->estimator))
             wanted->light_branches = std::make_unique<LightBranches>(*wanted->scene);

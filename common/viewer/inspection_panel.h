@@ -43,7 +43,7 @@ class Inspection {
         std::shared_ptr<const SceneBackend> scene_backend;
         Estimator estimator;
         uint64_t hash;  // of what they are compiled from
-        uvec2 image_size;
+        RenderParameters parameters;
         std::unique_ptr<PathRecorder> recorder = nullptr;
         std::unique_ptr<HemisphereView> hemisphere = nullptr;
         std::unique_ptr<LightBranches> light_branches = nullptr;  // if light samples choose by the tree

@@ -264,14 +264,11 @@ void Screen::keep_capture() {
     }
 }
 
-// The film with what light paths added, if they do.
+// With what light paths added, if they do.
 static ComputeKernel make_display_kernel(const Device& device, const Film& film, std::vector<Binding> bindings) {
     ShaderSource source{.file = project_folder() / "shaders" / "engine/display.comp"};
-    bindings.push_back(film.binding());
-    if (const auto splats = film.splat_binding()) {
-        source.defines.emplace_back("SPLATS");
-        bindings.push_back(*splats);
-    }
+    if (film.splat_unit() > 0) source.defines.emplace_back("SPLATS");
+    for (Binding& binding : film.bindings_of_picture()) bindings.push_back(std::move(binding));
     return {device, source, bindings, sizeof(DisplayParameters)};
 }
 

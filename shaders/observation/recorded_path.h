@@ -13,7 +13,9 @@ SHARED_CONSTANT EVENT_THROUGHPUT = 3u;         // an assignment to it
 SHARED_CONSTANT EVENT_RADIANCE_STARTS = 4u;    // a declaration of `radiance`
 SHARED_CONSTANT EVENT_RADIANCE = 5u;           // an assignment to it
 SHARED_CONSTANT EVENT_SURVIVAL = 6u;           // the value of `survival_probability`
-SHARED_CONSTANT EVENT_RESULT = 7u;             // what path_trace() returned
+SHARED_CONSTANT EVENT_RESULT = 7u;             // what finish_sample() got
+SHARED_CONSTANT EVENT_START = 8u;              // start_sample(): a path begins, and of two the one from the lamp comes first
+SHARED_CONSTANT EVENT_SPLAT = 9u;              // add_splat()
 
 SHARED_NUMBER NO_FLIGHT = -1.0f;
 

@@ -8,4 +8,4 @@ globalThis.live = {
 for (const name of ["preprocessor", "layout", "path"]) require(`${process.argv[2]}/${name}.js`);
 
 const {kinds, paths} = JSON.parse(fs.readFileSync(0, "utf8"));
-process.stdout.write(JSON.stringify(paths.map(events => new live.path.PathBuilder(events, kinds).build())));
+process.stdout.write(JSON.stringify(paths.map(events => live.path.pathOf(events, kinds))));

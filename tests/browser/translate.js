@@ -17,7 +17,7 @@ for (const {file, chapter, texts, defines, isRecorder} of jobs) {
     let text;
     try {
         const job = {sources: {...sources, ...texts}, chapter, defines, scene: {buffers: [], images: [texture]}};
-        const translated = live.glsl.translate({...job, ...(isRecorder && live.glsl.recorderOf(chapter))});
+        const translated = live.glsl.translate({...job, ...(isRecorder && live.glsl.recorderOf(job.sources, chapter))});
         const lines = translated.text.split("\n").map((line, i) => {
             const place = translated.place(i + 1);
             return place ? `${line}  // ${place.file}:${place.line}` : line;

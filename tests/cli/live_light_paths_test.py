@@ -66,6 +66,27 @@ class LiveLightPathsTest(LivePages, unittest.TestCase):
             self.assert_as_in_program(self.picture(), "15_light_paths", "--shader", f"{Path(LIGHT_PATH).name}={file.name}")
         self.assert_no_complaints()
 
+    def test_the_light_path_of_a_sample_is_listed_and_drawn(self):
+        self.start_tiny()
+        self.frame(f"frame.picture.path.select([{SIZE // 2}, {SIZE // 2}])")
+        seen = drawn = 0
+        for _ in range(20):
+            self.wait("!frame.picture.path.isRecording && frame.picture.path.path", "a path")
+            bounces, connections = self.frame(
+                "(path => [path.length, path.flatMap(({lightSamples}) => lightSamples).length])(frame.picture.path.path.lightPath)"
+            )
+            names = self.frame("[...frame.picture.path.list.querySelectorAll('strong')].map(title => title.textContent)")
+            self.assertEqual(names, [f"y{i + 1}, bounce {i + 1} of the light path" for i in range(bounces)])
+            self.assertEqual(
+                self.frame("frame.picture.path.list.textContent.split('seen from the camera').length - 1"), connections
+            )
+            drawn += self.frame("frame.picture.root.querySelectorAll('line[stroke=\"#ff8c28\"]').length")
+            seen += connections
+            self.click(">")
+        self.assertGreater(seen, 0)
+        self.assertGreater(drawn, 20)
+        self.assert_no_complaints()
+
     def test_devices_that_write_less_at_once(self):
         self.assert_as_in_program(self.start_tiny(WRITES_AT_MOST % 2), "15_light_paths")
         self.assertEqual(self.frame("frame.picture.renderings[0].rendering.films[0].frames.length"), 2)

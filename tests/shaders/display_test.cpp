@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "support/dielectric_scenes.h"
 #include "support/gpu_test.h"
+#include "support/render.h"
 #include "viewer/screen.h"
 
 namespace lab {
@@ -82,6 +84,34 @@ TEST(Display, KeepsThePictureWhereThereAreNoSamplesYet) {
     const auto after = show(film, picture, DisplayTransform::exposure, 0);
     EXPECT_NE(std::memcmp(after.data(), before.data(), 4 * 128), 0);
     EXPECT_EQ(std::memcmp(after.data() + 4 * 128, before.data() + 4 * 128, 4 * 128), 0);
+}
+
+// In the middle of a pass, light that its samples have sent to other pixels would be divided by their own number of samples.
+TEST(Display, ShowsLightPathsOfWholePasses) {
+    const Scene scene = room_with_box(dielectric_material(1.5f));
+    const RenderSettings settings{.estimator = chapter_estimator(chapter_named("light_paths"))};
+    const GpuScene gpu_scene = make_gpu_scene(scene, settings);
+    const auto scene_backend = settings.backend->build(test_device(), gpu_scene);
+    Renderer renderer(test_device(), *scene_backend, settings.estimator, make_parameters(scene, settings));
+    const auto picture = std::make_shared<StorageImage>(test_device(), settings.width, settings.height);
+    const auto shown = [&] { return show(renderer.film(), picture, DisplayTransform::exposure, 0); };
+    const auto expect_film = [&] {
+        const Texture expected = to_display(renderer.film().read(), DisplayTransform::exposure, 0);
+        const auto pixels = shown();
+        for (size_t i = 0; i < pixels.size(); ++i) ASSERT_NEAR(pixels[i], expected.pixels[i], 1) << i;
+    };
+    renderer.set_dispatch_seconds(1e-9);  // one block at a time
+    while (renderer.advance(1)) {
+    }
+    expect_film();
+    const auto before = shown();
+    ASSERT_TRUE(renderer.advance(2));
+    ASSERT_GT(renderer.samples(), 1);
+    EXPECT_EQ(shown(), before);
+    while (renderer.advance(2)) {
+    }
+    expect_film();
+    EXPECT_NE(shown(), before);
 }
 
 TEST(Display, EnlargesAReducedFilm) {

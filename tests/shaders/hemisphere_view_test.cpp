@@ -22,7 +22,7 @@ struct LookAtPoint {
           scene_backend(compute_backend->build(test_device(), gpu_scene)),
           parameters(make_parameters(scene, settings)),
           view(test_device(), *scene_backend, settings.estimator) {
-        PathRecorder recorder(test_device(), *scene_backend, settings.estimator, parameters.image_size);
+        PathRecorder recorder(test_device(), *scene_backend, settings.estimator, parameters);
         vertex = recorder.record(parameters, parameters.image_size / 2u + settings.height / 4, 0).vertices.at(0);
     }
     HemisphereView::Pictures look(uint32_t samples) {

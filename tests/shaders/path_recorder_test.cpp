@@ -7,6 +7,8 @@
 #include <fstream>
 #include <regex>
 
+#include "inspection/projection.h"
+#include "support/dielectric_scenes.h"
 #include "support/gpu_test.h"
 #include "support/render.h"
 #include "support/scenes.h"
@@ -29,7 +31,7 @@ std::vector<Recorded> record_paths(const Scene& scene, const RenderSettings& set
     const GpuScene gpu_scene(test_device(), scene, settings.strategy,
                              {.light_probe_sampling = scene.light_probe.has_value(), .media = !scene.media.empty()});
     const auto scene_backend = settings.backend->build(test_device(), gpu_scene);
-    PathRecorder recorder(test_device(), *scene_backend, settings.estimator, {settings.width, settings.height});
+    PathRecorder recorder(test_device(), *scene_backend, settings.estimator, make_parameters(scene, settings));
     std::vector<Recorded> paths;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t index = i * 7919 % (settings.width * settings.height);
@@ -56,6 +58,7 @@ class PathRecorderOf : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(, PathRecorderOf, testing::ValuesIn(all_chapters), own_estimator_name);
 
 TEST_P(PathRecorderOf, RecordsTheSampleThatTheRenderAdds) {
+    if (has_light_paths(GetParam())) return;  // other samples add to the pixel, too: see RecordsLightPaths
     const Scene scene = scene_for(GetParam());
     const RenderSettings settings = settings_for(GetParam());
     const uint32_t paths = samples_lights(GetParam()) ? 40 : 300;  // bounces rarely hit the light
@@ -235,6 +238,59 @@ TEST(PathRecorder, EndsRaysInMediaAtCollisions) {
             EXPECT_GT(last_collisions, 5u);
             EXPECT_GT(bright, 50u);
         }
+}
+
+// A picture of one sample per pixel is what the camera paths find and what the light paths send to the pixels that see them.
+TEST(PathRecorder, RecordsLightPaths) {
+    Scene scene = room_with_box(dielectric_material(1.5f), {-0.9f, 0.5f, -0.9f}, {0.9f, 0.6f, 0.9f});  // a pane below the lamp
+    RenderSettings settings = settings_for(chapter_named("light_paths"));
+    constexpr uint32_t extent = 12;
+    settings.width = settings.height = extent;
+    settings.samples = 1;
+    for (const float aperture : {0.0f, 0.3f}) {
+        scene.camera.aperture_diameter = aperture;
+        scene.camera.focus_distance = 1;
+        settings.backend = aperture > 0 ? fastest_backend() : compute_backend;
+        const FilmImage film = render(scene, settings);
+        std::vector<vec3> sums(film.pixels.size());
+        size_t sent = 0, hidden = 0;
+        const RenderParameters parameters = make_parameters(scene, settings);
+        const Camera& camera = parameters.camera;
+        const GpuScene gpu_scene = make_gpu_scene(scene, settings);
+        const auto scene_backend = settings.backend->build(test_device(), gpu_scene);
+        PathRecorder recorder(test_device(), *scene_backend, settings.estimator, parameters);
+        for (uint32_t i = 0; i < sums.size(); ++i) {
+            const RecordedPath path = recorder.record(parameters, {i % extent, i / extent}, 0);
+            sums[i] += path.radiance;
+            EXPECT_LT(glm::distance(path.vertices.at(0).origin, camera.position), 0.5f * aperture + 1e-5f);
+            vec3 start(0);
+            for (size_t k = 0; k < path.light_path.size(); ++k) {
+                const PathVertex& vertex = path.light_path[k];
+                EXPECT_EQ(vertex.parent, static_cast<int>(k) - 1);
+                if (k == 0) {
+                    EXPECT_NEAR(vertex.origin.y, 0.95f, 1e-5f) << "not from the lamp";
+                } else {
+                    EXPECT_LT(glm::distance(vertex.origin, start), 1e-4f);
+                }
+                start = vertex.position;
+                ASSERT_LE(vertex.light_samples.size(), 1u);
+                for (const LightSample& to_camera : vertex.light_samples) {
+                    EXPECT_LT(glm::distance(*to_camera.point, camera.position), 0.5f * aperture + 1e-5f);
+                    EXPECT_EQ(to_camera.radiance != vec3(0), to_camera.is_visible);
+                    ++(to_camera.is_visible ? sent : hidden);
+                    // Rays from all of the aperture meet in the plane in focus.
+                    const vec3 towards = vertex.position - *to_camera.point;
+                    const vec3 in_focus = *to_camera.point + towards * (1 / glm::dot(towards, camera.forward));
+                    const uvec2 pixel(*project(camera, in_focus) * static_cast<float>(extent));
+                    if (to_camera.is_visible) sums[pixel.y * extent + pixel.x] += to_camera.radiance;
+                }
+            }
+        }
+        for (size_t i = 0; i < sums.size(); ++i)
+            EXPECT_LT(glm::length(sums[i] - film.pixels[i].sum), 1e-4f * (1 + glm::length(sums[i]))) << i;
+        EXPECT_GT(sent, 30u);
+        EXPECT_GT(hidden, 3u);
+    }
 }
 
 TEST(PathRecorder, SaysWhetherThereIsAThroughputToFollow) {

@@ -21,8 +21,8 @@ static Scene make_room(const std::vector<Material>& content_materials, const std
     return scene;
 }
 
-Scene room_with_box(const Material& box) {
-    return make_room({box}, box_sides({-0.5f, -0.8f, -0.6f}, {0.3f, 0.1f, 0.2f}, 2, Facing::outwards));
+Scene room_with_box(const Material& box, const vec3& low, const vec3& high) {
+    return make_room({box}, box_sides(low, high, 2, Facing::outwards));
 }
 
 Scene empty_room() { return make_room({}, {}); }

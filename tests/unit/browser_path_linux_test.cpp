@@ -38,7 +38,7 @@ std::vector<RecordedEvent> random_events(std::mt19937& random) {
     std::vector<RecordedEvent> events(2 + choose(30));
     std::vector<vec3> places{vector()};
     for (RecordedEvent& event : events) {
-        event = {.kind = choose(3) == 0 ? EVENT_RAY : choose(EVENT_RESULT + 1),
+        event = {.kind = choose(3) == 0 ? EVENT_RAY : choose(EVENT_SPLAT + 1),
                  .variable = choose(3),
                  .value = vector(),
                  .origin = places[choose(static_cast<uint32_t>(places.size()))],
@@ -101,9 +101,11 @@ TEST(BrowserPath, IsThatOfThePrograms) {
                 {"RADIANCE_STARTS", EVENT_RADIANCE_STARTS},
                 {"RADIANCE", EVENT_RADIANCE},
                 {"SURVIVAL", EVENT_SURVIVAL},
-                {"RESULT", EVENT_RESULT}}}};
+                {"RESULT", EVENT_RESULT},
+                {"START", EVENT_START},
+                {"SPLAT", EVENT_SPLAT}}}};
     std::vector<RecordedPath> expected;
-    size_t collisions = 0, light_samples = 0, lost_roulettes = 0;
+    size_t collisions = 0, light_samples = 0, lost_roulettes = 0, of_light_paths = 0;
     for (int i = 0; i < 2000; ++i) {
         const std::vector<RecordedEvent> events = random_events(random);
         json list = json::array();
@@ -116,16 +118,22 @@ TEST(BrowserPath, IsThatOfThePrograms) {
     for (size_t i = 0; i < expected.size(); ++i) {
         EXPECT_EQ(page[i]["hasThroughput"], expected[i].has_throughput);
         expect_near(page[i]["radiance"], expected[i].radiance, "radiance of the sample");
-        ASSERT_EQ(page[i]["vertices"].size(), expected[i].vertices.size());
-        for (size_t v = 0; v < expected[i].vertices.size(); ++v) {
-            const PathVertex& vertex = expected[i].vertices[v];
-            expect_same(page[i]["vertices"][v], vertex);
-            collisions += vertex.is_collision;
-            light_samples += vertex.light_samples.size();
-            lost_roulettes += vertex.lost_roulettes.size();
-        }
+        const auto expect_same_vertices = [&](const json& of_page, const std::vector<PathVertex>& vertices) {
+            ASSERT_EQ(of_page.size(), vertices.size());
+            for (size_t v = 0; v < vertices.size(); ++v) {
+                const PathVertex& vertex = vertices[v];
+                expect_same(of_page[v], vertex);
+                collisions += vertex.is_collision;
+                light_samples += vertex.light_samples.size();
+                lost_roulettes += vertex.lost_roulettes.size();
+            }
+        };
+        expect_same_vertices(page[i]["vertices"], expected[i].vertices);
+        expect_same_vertices(page[i]["lightPath"], expected[i].light_path);
+        of_light_paths += expected[i].light_path.size();
     }
-    for (const size_t count : {collisions, light_samples, lost_roulettes}) EXPECT_GT(count, 100u);  // or it would say little
+    // Or it would say little.
+    for (const size_t count : {collisions, light_samples, lost_roulettes, of_light_paths}) EXPECT_GT(count, 100u);
 }
 
 }  // namespace

@@ -211,6 +211,25 @@ TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
         for (const LightSample& light : vertex.light_samples) EXPECT_TRUE(light.branch.empty());
 }
 
+// The path from the lamp that belongs to the same sample.
+TEST_F(InspectionTest, LightPathsAreOrange) {
+    chapter_ = load_chapter(chapter_named("light_paths"));
+    Options options = make_options();
+    options.scene.file = scenes / "caustics.json";
+    options.image.width = 90;
+    options.image.height = 60;
+    open(options);
+    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    size_t most = 0;
+    for (const float x : {500.0f, 560.0f, 640.0f, 720.0f}) {
+        click(x, 300);
+        wait_until("a path", [&] { return inspection().path().has_value() && !inspection().path()->light_path.empty(); });
+        take_screenshot("viewer_light_path");
+        most = std::max(most, count_pixels([](int r, int g, int b) { return r == 255 && g == 140 && b == 40; }));
+    }
+    EXPECT_GT(most, 50u);
+}
+
 TEST_F(InspectionTest, PathAndHemisphereFollowTheOptionsThatTheShaderIsCompiledFor_all) {
     chapter_ = load_chapter(chapter_named("multiple_importance_sampling"));
     Options options = options_with_reference();

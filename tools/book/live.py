@@ -80,10 +80,10 @@ IN_DRAWS = {
 OBSERVERS = {
     "view.glsl",
     "record_path.frag",
-    "record_path.glsl",
+    "record_path/path_trace.glsl",
+    "record_path/sample_loop.glsl",
     "recorded_path.h",
     "recorded_event_of_a_draw.glsl",
-    "observed_estimator.glsl",
 }
 
 
@@ -135,7 +135,7 @@ def shaders():
     texts = {
         file.relative_to(ROOT).as_posix(): file.read_text(encoding="utf-8")
         for file in files
-        if file.name in OBSERVERS or not {"solutions", "variants", "observation"} & set(file.parts)
+        if any(map(file.match, OBSERVERS)) or not {"solutions", "variants", "observation"} & set(file.parts)
     }
     for name, replacement in IN_DRAWS.items():
         texts[f"shaders/{name}"] = texts.pop(f"shaders/{replacement}")

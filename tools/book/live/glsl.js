@@ -100,12 +100,13 @@ int web_bitCount(uint v) { int n = 0; for (int i = 0; i < 32; ++i) n += int(v >>
     }
 
     // What records a path of a chapter in place of its program, for translate().
-    const recorderOf = chapter => ({
+    const recorderOf = (sources, chapter) => ({
         main: "shaders/observation/record_path.frag",
         named: {
-            "path_trace.glsl": "shaders/observation/record_path.glsl",
+            "path_trace.glsl": "shaders/observation/record_path/path_trace.glsl",
             "observed.glsl": `chapters/${chapter}/path_trace.glsl`,
-            "sample_loop.glsl": "shaders/engine/sample_loop.glsl"
+            "sample_loop.glsl": "shaders/observation/record_path/sample_loop.glsl",
+            "observed_sample_loop.glsl": finder(sources, chapter)("sample_loop.glsl", "")
         }
     });
 

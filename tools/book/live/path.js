@@ -52,11 +52,14 @@ live.path = (() => {
                     case kinds.RADIANCE:
                         this.addRadiance(event);
                         break;
+                    case kinds.SPLAT:
+                        this.addSplat(event);
+                        break;
                     case kinds.SURVIVAL:
                         this.endRoulette();
                         this.survivalProbability = event.value[0];
                         break;
-                    default:
+                    case kinds.RESULT:
                         path.radiance = event.value;
                 }
             }
@@ -147,12 +150,27 @@ live.path = (() => {
             this.isLightSampled = false;
         }
 
+        // What the latest light sample adds, even if no variable `radiance` has said so before.
+        addSplat({value}) {
+            const vertex = this.path.vertices[this.site], light = vertex?.lightSamples.at(-1);
+            if (!light) return;
+            vertex.radiance = vertex.radiance.map((x, i) => x + value[i] - light.radiance[i]);
+            light.radiance = value;
+        }
+
         // No ray followed this survival probability: the path has ended.
         endRoulette() {
             if (this.survivalProbability !== null && this.site >= 0)
                 this.path.vertices[this.site].lostRoulettes.push(this.survivalProbability);
             this.survivalProbability = null;
         }
+    }
+
+    // The path from the camera, and the one from the lamp beside it, which starts first.
+    function pathOf(events, kinds) {
+        const begin = events.findLastIndex(({kind}) => kind === kinds.START) + 1;
+        const path = new PathBuilder(events.slice(begin), kinds).build();
+        return {...path, lightPath: new PathBuilder(events.slice(0, begin), kinds).build().vertices};
     }
 
     // {RAY: 0, …} and a function that reads an event from its words.
@@ -193,7 +211,7 @@ live.path = (() => {
             if (words[0] === NO_EVENT) break;
             events.push(eventOf(words));
         }
-        return {...new PathBuilder(events, kinds).build(), isComplete: events.length < MOST_EVENTS};
+        return {...pathOf(events, kinds), isComplete: events.length < MOST_EVENTS};
     }
 
     // The image position of a point, as shaders/world/camera.glsl has it; null if it is not in front of the camera.
@@ -214,5 +232,5 @@ live.path = (() => {
         return ends.every(end => end) ? ends : null;
     }
 
-    return {PathBuilder, record, project, projectSegment, along, distance};
+    return {pathOf, record, project, projectSegment, along, distance};
 })();

@@ -6,6 +6,7 @@ live.PathPanel = (() => {
     const WIDTH = 400;  // of the drawing, in units of its lines
     const FAR = 1e3;    // where rays end that leave the scene, in distances from the camera
     const BLUE = "#3cc8ff", GREEN = "#78ff78", PINK = "#ff50c8", YELLOW = "#ffdc3c", GREY = "#787878";
+    const ORANGE = "#ff8c28";  // the light path
 
     // A number as "%.3g" of C writes it: halfway between two, it is the one with an even digit.
     function short(x) {
@@ -22,7 +23,7 @@ live.PathPanel = (() => {
     const titleOf = ({parent}, i) => parent < 0 ? `x${i + 1}, seen by the camera` : `x${i + 1}, after x${parent + 1}`;
 
     // What is told of a vertex.
-    function linesOf(vertex, isWeighted) {
+    function linesOf(vertex, isWeighted, isOfLightPath) {
         const lines = [];
         if (vertex.survivalProbability !== null) lines.push(`survived with probability ${short(vertex.survivalProbability)}`);
         if (isWeighted) lines.push(colour("throughput", vertex.throughput));
@@ -33,17 +34,17 @@ live.PathPanel = (() => {
         else
             lines.push(point("leaves the scene towards", vertex.direction));
         for (const light of vertex.lightSamples) {
-            lines.push(
-                light.point ? point("light sample at", light.point) : point("light sample of the sky, towards", light.direction));
+            const sample = light.point ? "light sample at" : "light sample of the sky, towards";
+            lines.push(point(isOfLightPath ? "seen from the camera, at" : sample, light.point ?? light.direction));
             lines.push(light.isVisible ? colour("  visible: adds", light.radiance) : "  hidden: adds nothing");
         }
-        if (vertex.radiance.some(part => part !== 0)) lines.push(colour("radiance found", vertex.radiance));
+        if (vertex.radiance.some(part => part !== 0) && !isOfLightPath) lines.push(colour("radiance found", vertex.radiance));
         for (const probability of vertex.lostRoulettes) lines.push(`Russian roulette: ended, survival ${short(probability)}`);
         return lines;
     }
 
-    // A path as the lines and points of an SVG.
-    function drawingOf({vertices}, camera, chosen, height) {
+    // A path, and the light path beside it, as the lines and points of an SVG.
+    function drawingOf({vertices, lightPath}, camera, chosen, height) {
         const at = ([x, y]) => [(WIDTH * x).toFixed(1), (height * y).toFixed(1)];
         const isInScene = ({isHit, isCollision}) => isHit || isCollision, parts = [];
         const line = (from, to, stroke, width) => {
@@ -53,18 +54,29 @@ live.PathPanel = (() => {
             parts.push(`<line x1="${x1}" y1="${y1}" x2="${x2}" y2="${y2}" stroke="${stroke}" stroke-width="${width}"/>`);
         };
         const farAway = (start, direction) => along(start, FAR * distance(start, camera.position), direction);
-        for (const {start, point, direction, isVisible} of vertices.flatMap(vertex => vertex.lightSamples))
-            line(start, point ?? farAway(start, direction), isVisible ? YELLOW : GREY, 1);
-        for (const vertex of vertices.filter(({parent}) => parent >= 0)) {
-            const start = vertices[vertex.parent].position;
-            line(start, isInScene(vertex) ? vertex.position : farAway(start, vertex.direction), BLUE, 2);
-        }
-        vertices.forEach((vertex, i) => {
+        const shadowRays = (vertices, stroke) => {
+            for (const {start, point, direction, isVisible} of vertices.flatMap(vertex => vertex.lightSamples))
+                line(start, point ?? farAway(start, direction), isVisible ? stroke : GREY, 1);
+        };
+        const ray = (vertex, start, stroke) =>
+            line(start, isInScene(vertex) ? vertex.position : farAway(start, vertex.direction), stroke, 2);
+        const dot = (vertex, name, radius, fill) => {
             const place = isInScene(vertex) && project(camera, vertex.position);
             if (!place) return;
-            const [x, y] = at(place), fill = i === chosen ? PINK : vertex.isCollision ? GREEN : BLUE;
-            parts.push(`<circle cx="${x}" cy="${y}" r="${i === chosen ? 5 : 3.5}" fill="${fill}"/>`);
-            parts.push(`<text x="${x}" y="${y}" dx="7" dy="4" fill="${fill}">x${i + 1}</text>`);
+            const [x, y] = at(place);
+            parts.push(`<circle cx="${x}" cy="${y}" r="${radius}" fill="${fill}"/>`);
+            parts.push(`<text x="${x}" y="${y}" dx="7" dy="4" fill="${fill}">${name}</text>`);
+        };
+        shadowRays(lightPath, ORANGE);
+        lightPath.forEach((vertex, i) => {
+            ray(vertex, lightPath[vertex.parent]?.position ?? vertex.origin, ORANGE);
+            dot(vertex, `y${i + 1}`, 3.5, ORANGE);
+        });
+        shadowRays(vertices, YELLOW);
+        for (const vertex of vertices.filter(({parent}) => parent >= 0)) ray(vertex, vertices[vertex.parent].position, BLUE);
+        vertices.forEach((vertex, i) => {
+            const fill = i === chosen ? PINK : vertex.isCollision ? GREEN : BLUE;
+            dot(vertex, `x${i + 1}`, i === chosen ? 5 : 3.5, fill);
         });
         return `<svg viewBox="0 0 ${WIDTH} ${height}">${parts.join("")}</svg>`;
     }
@@ -129,7 +141,7 @@ live.PathPanel = (() => {
         }
 
         async compile({chapter, sources, defines, scene}) {
-            const translated = live.glsl.translate({sources, chapter, defines, scene, ...live.glsl.recorderOf(chapter)});
+            const translated = live.glsl.translate({sources, chapter, defines, scene, ...live.glsl.recorderOf(sources, chapter)});
             return {translated, linked: await this.picture.renderer.compile(translated)};
         }
 
@@ -153,7 +165,11 @@ live.PathPanel = (() => {
                 };
                 const title = element("button", {type: "button", "aria-pressed": String(i === chosen), click: choose});
                 title.append(titleOf(vertex, i));
-                this.list.append(title, element("pre", {}, linesOf(vertex, isWeighted).join("\n")));
+                this.list.append(title, element("pre", {}, linesOf(vertex, isWeighted, false).join("\n")));
+            });
+            path.lightPath.forEach((vertex, i) => {
+                const title = element("strong", {style: `color: ${ORANGE}`}, `y${i + 1}, bounce ${i + 1} of the light path`);
+                this.list.append(title, element("pre", {}, linesOf(vertex, isWeighted, true).join("\n")));
             });
             this.drawing.innerHTML = drawingOf(path, camera, chosen, WIDTH * height / width);
         }

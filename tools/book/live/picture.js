@@ -153,10 +153,10 @@ live.Picture = (() => {
                 named["path_trace.glsl"] = "shaders/observation/view.glsl";
                 named["sample_loop.glsl"] = "shaders/engine/sample_loop.glsl";
             }
-            const splats = this.hasLightPaths(parameters, defines, views) ? ["SPLATS"] : [];
-            const adder = splats.length ? await this.renderer.compile(live.Splats.adder(live.sources, chapter)) : undefined;
-            const all = [...defines, ...views, ...splats];
-            const translated = live.glsl.translate({sources, chapter, named, defines: all, scene});
+            const hasLightPaths = this.hasLightPaths(parameters, defines, views);
+            if (hasLightPaths) defines.push("SPLATS");
+            const adder = hasLightPaths ? await this.renderer.compile(live.Splats.adder(live.sources, chapter)) : undefined;
+            const translated = live.glsl.translate({sources, chapter, named, defines: [...defines, ...views], scene});
             const started = performance.now(), linked = await this.renderer.compile(translated);
             const compileTime = performance.now() - started;
             if (this.camera?.hasMoved) parameters.set(this.camera.words);

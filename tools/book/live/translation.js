@@ -142,8 +142,8 @@ live.Translation = (() => {
             if (call) this.emit(isDeclaration ? call : `${call} }`, place);
         }
 
-        // The call of a function of record_path.glsl that belongs behind the statement which begins here, if that file is part of
-        // the program: as common/inspection/recording_calls.cpp inserts it.
+        // The call of a function of observation/record_path that belongs behind the statement which begins here, if that file is
+        // part of the program: as common/inspection/recording_calls.cpp inserts it.
         recordingCall(place) {
             const [first, second, third] = this.tokens.slice(this.at, this.at + 3).map(({text}) => text);
             const isDeclaration = (first === "vec3" || first === "float") && third === "=";

@@ -1,9 +1,10 @@
 // Wraps a chapter's estimator and records what it does for one sample of one pixel.
 //
-// trace_ray() and is_occluded() are replaced here. After the estimator's assignments to `throughput`, `radiance`,
-// `survival_probability` and `flight`, common/inspection/recording_calls.cpp has inserted calls of the functions record_…() below.
+// trace_ray(), is_occluded() and add_splat() are replaced here, and start_sample() and finish_sample() in sample_loop.glsl. After the
+// estimator's assignments to `throughput`, `radiance`, `survival_probability` and `flight`, common/inspection/recording_calls.cpp has
+// inserted calls of the functions record_…() below.
 #include "observation/recorded_path.h"
-#include "recorded_events.glsl"
+#include "observation/recorded_events.glsl"
 
 bool is_recording = false;
 
@@ -72,18 +73,12 @@ void add_shading_data() {
     }
 }
 
+#ifdef SPLATS
+// In place of add_splat(): nothing reaches the film.
+void record_and_keep_splat(uvec2 pixel, vec3 radiance, uint sample_index) { record_value(EVENT_SPLAT, radiance, 0u); }
+#define add_splat record_and_keep_splat
+#endif
+
 #define trace_ray record_and_trace_ray
 #define is_occluded record_and_ask_is_occluded
-#include "observation/observed_estimator.glsl"
-
-vec3 path_trace(Ray ray, inout uvec2 seed) {
-    // Every sample of every pixel starts with different random numbers, so these identify it.
-    uvec2 recorded_seed = random_start_state(recorded_pixel, recorded_sample, parameters.seed_key);
-    get_random_numbers(recorded_seed);
-    is_recording = seed == recorded_seed;
-    vec3 result = observed_path_trace(ray, seed);
-    record_value(EVENT_RESULT, result, 0u);
-    if (is_recording) add_shading_data();
-    is_recording = false;
-    return result;
-}
+#include "observed.glsl"
