@@ -24,6 +24,7 @@ QUESTIONS = {  # name: module
     "learn": "learning.learn",
     "lens_points": "measure.lens_points",
     "light_choices": "measure.light_choices",
+    "derivatives": "measure.derivatives",
     "light_paths": "measure.light_paths",
     "media_strategies": "measure.media_strategies",
     "mistakes": "mistakes.cpp_mistake",

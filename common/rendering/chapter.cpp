@@ -58,7 +58,9 @@ std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::st
     if (!chapter.has("choices")) return choices;
     for (const nlohmann::json& content : chapter.array("choices")) {
         const JsonObject choice(content, file, "a choice", {"name", "help", "values", "shows"});
-        choices.push_back({choice.required("name", choice.text("name")), choice.required("help", choice.text("help")), {},
+        choices.push_back({choice.required("name", choice.text("name")),
+                           choice.required("help", choice.text("help")),
+                           {},
                            choice.text("shows").value_or("")});
         if (!choices.back().name.starts_with("--")) choice.fail("name", "must begin with --");
         for (const nlohmann::json& value : choice.array("values")) {

@@ -1,3 +1,4 @@
+// The material of what has none.
 const uint NO_MATERIAL = 0xffffffffu;
 
 // What an estimator needs to know about the point x_k that a ray hits.

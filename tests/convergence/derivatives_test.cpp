@@ -93,7 +93,8 @@ struct DerivativeCase {
 class DerivativesOf : public testing::TestWithParam<DerivativeCase> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, DerivativesOf,
                          testing::Values(DerivativeCase{"cornell_box", 64, Run::always}, DerivativeCase{"smoke", 64, Run::always},
-                                         DerivativeCase{"studio", 512, Run::with_all}, DerivativeCase{"glass", 512, Run::with_all},
+                                         DerivativeCase{"studio", 512, Run::with_all},
+                                         DerivativeCase{"glass", 512, Run::with_all},
                                          DerivativeCase{"glossy", 1024, Run::with_all}),
                          [](const auto& info) { return instance_name(info.param.scene, info.param.run); });
 

@@ -341,6 +341,7 @@ def write(folder, frames):
             chapters[chapter] = {
                 "title": told["title"],
                 "strategies": told.get("strategies", []),
+                "choices": told.get("choices", []),
                 "pictures": pictures,
                 "samples": told["check"]["samples"],
                 "checked": told["check"]["references"],

@@ -24,7 +24,7 @@ live.Controls = (() => {
 
     return class Controls {
         constructor(frame) {
-            const {about: {pictures, strategies, exercise, bugs}, editor} = frame, restart = () => frame.restart();
+            const {about: {pictures, strategies, choices, exercise, bugs}, editor} = frame, restart = () => frame.restart();
             this.isPaused = false;
             this.scene = select(pictures.map(({name}, i) => [i, lengthText(name)]), () => {
                 this.length.value = this.sky.value = "";
@@ -32,6 +32,12 @@ live.Controls = (() => {
             });
             this.view = select(Object.entries(VIEWS), () => frame.viewChanged());
             this.strategy = select(strategies.map(name => [name, LIGHTS[name]]), restart);
+            this.choices =
+                choices.map(choice => ({
+                                ...choice,
+                                define: choice.name.slice(2).replaceAll("-", "_").toUpperCase(),
+                                chosen: select(choice.values.map(([name], i) => [i, name.replaceAll("_", " ")]), restart)
+                            }));
             this.length =
                 element("input", {type: "number", min: "0", max: "100", step: "1", placeholder: "as above", change: restart});
             const hint = "radiance of the sky: three numbers, such as 1,1,1";
@@ -62,8 +68,9 @@ live.Controls = (() => {
             this.root = element(
                 "div", {class: "live-controls", role: "group", "aria-label": "controls of the picture"},
                 label("Scene ", this.scene), label("Show ", this.view),
-                ...(strategies.length > 1 ? [label("Light by ", this.strategy)] : []), label("Bounces ", this.length),
-                label("Background ", this.sky),
+                ...(strategies.length > 1 ? [label("Light by ", this.strategy)] : []),
+                ...this.choices.map(({name, chosen}) => label(`${name.slice(2).replaceAll("-", " ")} `, chosen)),
+                label("Bounces ", this.length), label("Background ", this.sky),
                 ...(pictures.some(({before}) => before) ? [label(this.compared, " compare with the chapter before")] : []),
                 this.firstCamera, this.pause, button("Restart", restart), button("Check", () => frame.check()),
                 ...(exercise ? [button("Start exercise 1", startExercise)] : []),
@@ -76,8 +83,15 @@ live.Controls = (() => {
         // Whether surfaces are shown instead of radiance.
         get isView() { return /^[A-Z]/.test(this.view.value); }
 
-        // The defines of the page's own options.
-        get options() { return this.strategy.value ? [`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`] : []; }
+        // The defines of the page's own options: those of choices that are not the first, which the shader knows.
+        get options() {
+            const strategy = this.strategy.value ? [`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`] : [];
+            const made = this.choices.filter(({chosen}) => chosen.selectedIndex > 0);
+            return [...strategy, ...made.map(({define, values, chosen}) => `${define} ${values[chosen.selectedIndex][1]}`)];
+        }
+
+        // What the picture shows instead of radiance, or nothing.
+        get shownInstead() { return this.choices.find(({chosen, shows}) => chosen.selectedIndex > 0 && shows)?.shows; }
 
         // The radiance of the sky, if it is not that of the scene, as --background takes it.
         get background() {
@@ -97,6 +111,7 @@ live.Controls = (() => {
             this.view.value = "picture";
             this.length.value = this.sky.value = "";
             if (this.strategy.value) this.strategy.selectedIndex = 0;
+            for (const {chosen} of this.choices) chosen.selectedIndex = 0;
         }
     };
 })();

@@ -128,6 +128,7 @@ live.Picture = (() => {
         get withoutVerdict() {
             const {picture, renderings: [{parameters}], renderer: {layout}} = this;
             if (!picture.reference) return "this scene has no reference";
+            if (this.frame.controls.shownInstead) return `the picture shows ${this.frame.controls.shownInstead}`;
             const differs = member => {
                 const place = layout.offsetOf("RenderParameters", member), type = layout.typeOf("RenderParameters", member);
                 return parameters.subarray(place, place + layout.wordsOf(type))
