@@ -30,6 +30,7 @@ TEST(Derivatives, OfAFurnaceAreTheSeries) {
     const vec3 albedo(0.2f, 0.5f, 0.8f);
     RenderSettings settings = derivative_settings(0);
     settings.strategy = Strategy::bounces;
+    settings.estimator.max_threads_per_pixel = 1;  // so that one path follows another
     settings.max_path_length = 8;
     settings.samples = 400;
     const FilmImage film = render(closed_box(diffuse_material(albedo, vec3(1))), settings);

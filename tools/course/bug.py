@@ -64,11 +64,12 @@ def find_scene(word):
         return scene_file(word), None
 
 
-def new_render(chapter, scene):
-    """What to render: with the path length of the reference, and SCALE times as large."""
+def new_render(chapter, scene, options=()):
+    """What to render: with the path length of the reference, and SCALE times as large. Options of the chapter's own show something
+    else than the reference does."""
     file, reference = find_scene(scene)
-    case = new_case(file, reference, f"chapter {chapter}", CHAPTERS[chapter], OPTIONS[chapter])
-    return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE if reference else 1}
+    case = new_case(file, None if options else reference, f"chapter {chapter}", CHAPTERS[chapter], [*OPTIONS[chapter], *options])
+    return case | {"width": SCALE * case["width"], "height": SCALE * case["height"], "scale": SCALE if case["reference"] else 1}
 
 
 def render(case, samples, options, shaders):
@@ -88,17 +89,23 @@ def render(case, samples, options, shaders):
     return np.mean(pictures, axis=0)
 
 
-def telling_scene(chapter, planted, options):
+def shown_by(bug):
+    """The options without which a bug does not show."""
+    return bug.mistake.get("options", "").split()
+
+
+def telling_scene(bug, planted, options):
     """The scene of ./lab check whose picture the bug changes most, judged by the means of tiles with a single sample per
     pixel."""
 
     def change(scene):
         right, wrong = (
-            averaged(render(new_render(chapter, scene), 1, options, shaders), SCALE * TILE) for shaders in ([], planted)
+            averaged(render(new_render(bug.chapter, scene, shown_by(bug)), 1, options, shaders), SCALE * TILE)
+            for shaders in ([], planted)
         )
         return np.abs(wrong - right).mean() / right.mean()
 
-    return max(SCENES[chapter][1], key=change)
+    return max(SCENES[bug.chapter][1], key=change)
 
 
 def as_reference(case):
@@ -132,7 +139,7 @@ def verdict(right, wrong):
 def show(bug, index, scene, planted, options):
     """Renders with the right shader and with the wrong one, and says what to look for."""
     samples, started = options.samples or 2 * SCENES[bug.chapter][0], time.monotonic()
-    cases = [new_render(bug.chapter, scene) for _ in range(2)]
+    cases = [new_render(bug.chapter, scene, shown_by(bug)) for _ in range(2)]
     images = []
     for case, shaders in zip(cases, ([], planted)):
         images.append(render(case, samples, options, shaders))
@@ -154,7 +161,7 @@ def show(bug, index, scene, planted, options):
 
 def open_window(bug, scene, planted, options):
     """Shows the chapter with the bug, until its window is closed."""
-    case = new_render(bug.chapter, scene)
+    case = new_render(bug.chapter, scene, shown_by(bug))
     length = ["--max-path-length", case["max_path_length"]] if case["reference"] else []
     command = [
         program_file(case["program"]),
@@ -162,7 +169,7 @@ def open_window(bug, scene, planted, options):
         "--window",
         *planted,
         *length,
-        *OPTIONS[bug.chapter],
+        *case["options"].split(),
         "--backend",
         options.backend,
         *(["--device", options.device] if options.device else []),
@@ -234,7 +241,7 @@ def main():
     with replaced(bug.file, bug.text) as planted:
         if options.sanitize:
             return sanitize(bug, planted, options)
-        scene = options.scene or telling_scene(bug.chapter, planted, options)
+        scene = options.scene or telling_scene(bug, planted, options)
         if options.window:
             open_window(bug, scene, planted, options)
         else:
