@@ -23,6 +23,7 @@ TOOLS = {  # name: module
     "rooms": "docs.rooms",
     "sample": "lesson.sample",
     "show": "lesson.show",
+    "solve": "lesson.solve",
     "tables": "docs.tables",
     "windows": "package.windows_programs",
 }

@@ -1,0 +1,43 @@
+"""./lab solve: albedos from a picture."""
+
+import re
+import shutil
+import unittest
+
+from program import ProgramTest  # first: it finds the tools
+from project import ROOT
+from references.images import scene_file
+
+PICTURE = ROOT / "assets/references/cornell_box_6.exr"  # from another renderer
+
+
+class SolveTest(ProgramTest):
+    def found(self, *arguments):
+        """What the last step found: name -> three numbers."""
+        code, out, err = self.run_tool("solve", *arguments)
+        self.assertEqual((code, err), (0, ""))
+        parts = re.findall(r"(\w+) ([\d.]+) ([\d.]+) ([\d.]+)", out.splitlines()[-1].split(maxsplit=2)[2])
+        return {name: list(map(float, numbers)) for name, *numbers in parts}
+
+    def test_finds_the_colours_of_two_walls(self):
+        found = self.found("cornell_box", PICTURE, "red", "green", "--samples", 32)
+        for name, albedo in (("red", (0.62, 0.12, 0.1)), ("green", (0.16, 0.46, 0.13))):
+            for value, expected in zip(found[name], albedo):
+                self.assertAlmostEqual(value / expected, 1, delta=0.02)
+
+    def test_finds_the_scene_s_files_wherever_it_lies(self):
+        folder = self.folder / "elsewhere"
+        (folder / "scenes").mkdir(parents=True)
+        shutil.copy(scene_file("cornell_box"), folder / "scenes")
+        shutil.copytree(ROOT / "assets/meshes", folder / "meshes")
+        found = self.found(folder / "scenes/cornell_box.json", PICTURE, "red", "--steps", 1, "--samples", 4)
+        self.assertEqual(list(found), ["red"])
+
+    def test_says_what_it_cannot_do(self):
+        self.assert_tool_refused(["solve", "cornell_box", PICTURE, "blue"], "no material has this name: white, red, green, light")
+        self.assert_tool_refused(["solve", "nothing", PICTURE, "red"], "there is no such file")
+        self.assert_tool_refused(["solve", "cornell_box", "nothing.exr", "red"], "there is no such file")
+
+
+if __name__ == "__main__":
+    unittest.main()
