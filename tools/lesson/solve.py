@@ -85,12 +85,23 @@ def names_in_order(meshes):
     return names
 
 
+def read_picture(file):
+    """The picture in an EXR: array [row, column, channel]."""
+    try:
+        picture = Exr(file).rgb()
+    except (KeyError, ValueError) as error:
+        raise UserError(f"{file}: cannot be read as an EXR: {error}") from None
+    if not np.isfinite(picture).all():
+        raise UserError(f"{file}: some pixels are infinite or not a number")
+    return picture
+
+
 class Solver:
     """A scene whose albedos change, in a folder of its own."""
 
     def __init__(self, scene, picture, names, options, folder):
         self.scene, self.names, self.options, self.folder = absolute(read_json(scene), scene.parent), names, options, folder
-        self.picture = Exr(picture).rgb()
+        self.picture = read_picture(picture)
         self.length = options.max_path_length or int(read_attributes(picture).get("max_path_length", 0))
         known = names_in_order(self.scene["meshes"])
         for name in names:
@@ -98,6 +109,11 @@ class Solver:
                 raise UserError(
                     f"{name}: {'several materials have' if name in known else 'no material has'} this name: {', '.join(known)}"
                 )
+            if not any(
+                re.search(r"^\s*Kd ", statements(text_of(material_file(mesh))).get(name, ""), re.MULTILINE)
+                for mesh in self.scene["meshes"]
+            ):
+                raise UserError(f"{name}: has no Kd in its .mtl file, so there is no albedo to find")
         self.numbers = [1 + known.index(name) for name in names]
 
     def write(self, albedos):
@@ -122,18 +138,8 @@ class Solver:
         options, file = self.options, self.folder / "picture.exr"
         height, width, _ = self.picture.shape
         command = [program_file(CHAPTER), self.folder / "scene.json", "--headless", "--quiet", "--output", file]
-        command += [
-            "--width",
-            width,
-            "--height",
-            height,
-            "--samples",
-            options.samples,
-            "--seed",
-            seed,
-            "--backend",
-            options.backend,
-        ]
+        command += [f"--width={width}", f"--height={height}", f"--samples={options.samples}", f"--seed={seed}"]
+        command += [f"--backend={options.backend}"]
         command += ["--max-path-length", self.length] if self.length else []
         command += ["--device", options.device] if options.device else []
         process = run_program([*command, *(["--derivative", material] if material else [])])
