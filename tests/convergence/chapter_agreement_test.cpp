@@ -124,6 +124,7 @@ TEST(ChapterChoices, ChangeTheNoiseAndNotTheImage) {
     uint32_t seed = 2000;
     for (const std::string& chapter : all_chapters)
         for (const ChapterChoice& choice : load_chapter(chapter).choices) {
+            if (!choice.shows.empty()) continue;
             std::vector<Batches> images;
             for (const auto& [name, value] : choice.values) {
                 Subject subject{name, chapter_estimator(chapter), 1};
