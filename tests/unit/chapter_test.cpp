@@ -13,7 +13,7 @@
 namespace lab {
 namespace {
 
-// Text of a chapter's shaders, including those that it takes from other chapters.
+// Text of a chapter's shaders in this folder, including those that it takes from other chapters.
 std::string shader_text(const Chapter& chapter, const std::string& folder = "/chapters/") {
     std::string text;
     for (const auto& file : shader_files(estimator_of(chapter)))
