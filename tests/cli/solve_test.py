@@ -35,6 +35,7 @@ class SolveTest(ProgramTest):
 
     def test_says_what_it_cannot_do(self):
         self.assert_tool_refused(["solve", "cornell_box", PICTURE, "blue"], "no material has this name: white, red, green, light")
+        self.assert_tool_refused(["solve", ROOT / "assets/meshes/cornell_box.obj", PICTURE, "red"], "is no .json")
         self.assert_tool_refused(["solve", "nothing", PICTURE, "red"], "there is no such file")
         self.assert_tool_refused(
             ["solve", "cornell_box", ROOT / "docs/pictures/derivatives.jpg", "red"], "cannot be read as an EXR"

@@ -31,7 +31,6 @@ from references.images import scene_file
 CHAPTER = next((folder for folder in CHAPTERS.values() if folder.endswith("_derivatives")), None)
 START = 0.5
 LARGEST_STEP = 1.5  # of the logarithm of an albedo
-DARK = 0.05  # of the mean: pixels darker than this are as noisy as those of this brightness
 LOW, HIGH = 1e-3, 1.0  # of an albedo
 
 
@@ -152,12 +151,11 @@ class Solver:
         self.write(albedos)
         missing = self.picture - self.render(2 * turn)
         derivatives = np.stack([self.render(2 * turn + 1, each) for each in self.numbers], axis=-1)
-        weights = 1 / (self.picture + DARK * self.picture.mean())
         changed = albedos.copy()
         for channel in range(3):
-            weight = weights[..., channel].ravel()
-            known, wanted = derivatives[..., channel, :].reshape(len(weight), -1), missing[..., channel].ravel()
-            change = np.linalg.lstsq(weight[:, None] * known, weight * wanted, rcond=None)[0]
+            # All pixels weigh the same: weights from the picture would prefer those that its noise has made dark.
+            wanted = missing[..., channel].ravel()
+            change = np.linalg.lstsq(derivatives[..., channel, :].reshape(len(wanted), -1), wanted, rcond=None)[0]
             changed[:, channel] *= np.exp(np.clip(change, -LARGEST_STEP, LARGEST_STEP))
         return np.clip(changed, LOW, HIGH)
 
@@ -178,6 +176,8 @@ def main():
     for file in (scene, options.picture):
         if not file.is_file():
             raise UserError(f"{file}: there is no such file")
+    if scene.suffix != ".json":
+        raise UserError(f"{scene}: is no .json: write a scene file that names it, see docs/scenes.md")
     with tempfile.TemporaryDirectory() as folder:
         solver = Solver(scene, options.picture, options.material, options, Path(folder))
         albedos = np.full((len(options.material), 3), START)
