@@ -1,11 +1,13 @@
 """./lab solve: albedos from a picture."""
 
+import json
 import re
 import shutil
 import unittest
 
 from program import ProgramTest  # first: it finds the tools
 from project import ROOT
+from references.albedos import materials_of, write_scene
 from references.images import scene_file
 
 PICTURE = ROOT / "assets/references/cornell_box_6.exr"  # from another renderer
@@ -32,6 +34,21 @@ class SolveTest(ProgramTest):
         shutil.copytree(ROOT / "assets/meshes", folder / "meshes")
         found = self.found(folder / "scenes/cornell_box.json", PICTURE, "red", "--steps", 1, "--samples", 4)
         self.assertEqual(list(found), ["red"])
+
+    def test_reads_materials_as_the_chapters_do(self):
+        """A file that stands for the mesh's own, with tabs, comments, and glass, which comes last."""
+        (self.folder / "box.mtl").write_text(
+            "newmtl white\nd 0\nNi 1.5\nnewmtl red # wall\n\tKd\t0.1 0.1 0.1\n  newmtl green\nKd 0.2 0.2 0.2\nnewmtl light\nKe 9 9 9\n"
+        )
+        (self.folder / "new").mkdir()
+        scene = self.folder / "scene.json"
+        mesh = ROOT / "assets/meshes/cornell_box.obj"
+        scene.write_text(json.dumps({"meshes": [{"file": str(mesh), "materials": "box.mtl"}]}))
+        self.assertEqual([material.name for material in materials_of(scene)], ["red", "green", "light", "white"])
+        text = (write_scene(scene, {"red": (0.3, 0.4, 0.5)}, self.folder / "new").parent / "0.mtl").read_text()
+        self.assertRegex(text, r"newmtl red.*\nKd 0\.3 0\.4 0\.5\n")
+        self.assertNotIn("0.1", text)
+        self.assertIn("Kd 0.2 0.2 0.2", text)
 
     def test_says_what_it_cannot_do(self):
         self.assert_tool_refused(["solve", "cornell_box", PICTURE, "blue"], "no material has this name: white, red, green, light")

@@ -7,24 +7,12 @@ albedo 1/2. Each step renders the picture and the derivatives, and changes the a
 derivatives explain the difference. Picture and derivatives have different random numbers, since the product of their noise would
 otherwise not vanish on average.
 """
-import json
-import re
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from project import (
-    CHAPTERS,
-    Parser,
-    UserError,
-    add_device_options,
-    failure_text,
-    number,
-    program_file,
-    read_json,
-    run_program,
-    text_of,
-)
+from project import CHAPTERS, Parser, UserError, add_device_options, failure_text, number, program_file, run_program
+from references.albedos import materials_of, write_scene
 from references.exr import Exr, read_attributes
 from references.images import scene_file
 
@@ -32,56 +20,6 @@ CHAPTER = next((folder for folder in CHAPTERS.values() if folder.endswith("_deri
 START = 0.5
 LARGEST_STEP = 1.5  # of the logarithm of an albedo
 LOW, HIGH = 1e-3, 1.0  # of an albedo
-
-
-def absolute(value, folder):
-    """A value of a scene file whose names of files do not depend on where it lies."""
-    if isinstance(value, dict):
-        return {key: absolute(each, folder) for key, each in value.items()}
-    if isinstance(value, list):
-        return [absolute(each, folder) for each in value]
-    return str((folder / value).resolve()) if isinstance(value, str) and (folder / value).is_file() else value
-
-
-def material_file(mesh):
-    """The .mtl file of an entry of a scene's meshes."""
-    if "materials" in mesh:
-        return Path(mesh["materials"])
-    library = re.search(r"^mtllib +(.+?)\s*$", text_of(Path(mesh["file"])), re.MULTILINE)
-    if not library:
-        raise UserError(f"{mesh['file']}: has no mtllib, so there is no albedo to find")
-    return Path(mesh["file"]).with_name(library[1])
-
-
-def statements(text):
-    """Material -> the text behind its newmtl."""
-    parts = re.split(r"^newmtl +(.+?)\s*$", text, flags=re.MULTILINE)
-    return dict(zip(parts[1::2], parts[2::2]))
-
-
-def is_glass(text):
-    """Whether what an .mtl file says of a material makes it a dielectric."""
-    opacity = re.search(r"^\s*d +(\S+)", text, re.MULTILINE)
-    transparency = re.search(r"^\s*Tr +(\S+)", text, re.MULTILINE)
-    return float(opacity[1]) < 1 if opacity else float(transparency[1]) > 0 if transparency else False
-
-
-def names_in_order(meshes):
-    """The names of all materials in the order of --derivative: that in which the faces of a mesh use them, glass after all others."""
-    names, seen = [], set()
-    for mesh in meshes:
-        file = material_file(mesh)
-        if (mesh["file"], file) in seen:
-            continue
-        seen.add((mesh["file"], file))
-        said, used, name = statements(text_of(file)), {}, None
-        for word, *rest in (line.split(maxsplit=1) for line in text_of(Path(mesh["file"])).splitlines() if line.strip()):
-            if word == "usemtl":
-                name = rest[0].strip()
-            elif word == "f":
-                used[name] = is_glass(said.get(name, ""))
-        names += sorted(used, key=used.get)
-    return names
 
 
 def read_picture(file):
@@ -99,38 +37,16 @@ class Solver:
     """A scene whose albedos change, in a folder of its own."""
 
     def __init__(self, scene, picture, names, options, folder):
-        self.scene, self.names, self.options, self.folder = absolute(read_json(scene), scene.parent), names, options, folder
+        self.scene, self.names, self.options, self.folder = scene, names, options, folder
         self.picture = read_picture(picture)
         self.length = options.max_path_length or int(read_attributes(picture).get("max_path_length", 0))
-        known = names_in_order(self.scene["meshes"])
+        known = [material.name for material in materials_of(scene)]
         for name in names:
             if known.count(name) != 1:
                 raise UserError(
                     f"{name}: {'several materials have' if name in known else 'no material has'} this name: {', '.join(known)}"
                 )
-            if not any(
-                re.search(r"^\s*Kd ", statements(text_of(material_file(mesh))).get(name, ""), re.MULTILINE)
-                for mesh in self.scene["meshes"]
-            ):
-                raise UserError(f"{name}: has no Kd in its .mtl file, so there is no albedo to find")
         self.numbers = [1 + known.index(name) for name in names]
-
-    def write(self, albedos):
-        """Writes the scene with these albedos, an array [material, channel]."""
-        meshes = []
-        for index, mesh in enumerate(self.scene["meshes"]):
-            file = material_file(mesh)
-            text = re.sub(
-                r"^(\s*map_\w+ +)(\S+)", lambda map: f"{map[1]}{file.parent / map[2]}", text_of(file), flags=re.MULTILINE
-            )
-            for name, albedo in zip(self.names, albedos):
-                found = " ".join(f"{value:.9g}" for value in albedo)
-                text = re.sub(
-                    rf"^(newmtl +{re.escape(name)}\s*\n(?:(?!newmtl).*\n)*?\s*Kd ).*", rf"\g<1>{found}", text, flags=re.MULTILINE
-                )
-            (self.folder / f"{index}.mtl").write_text(text, encoding="utf-8")
-            meshes.append(mesh | {"materials": f"{index}.mtl"})
-        (self.folder / "scene.json").write_text(json.dumps(self.scene | {"meshes": meshes}), encoding="utf-8")
 
     def render(self, seed, material=None):
         """The picture, or its derivative with respect to the logarithm of the albedo of the material with this number."""
@@ -148,7 +64,7 @@ class Solver:
 
     def step(self, albedos, turn):
         """The albedos after one step."""
-        self.write(albedos)
+        write_scene(self.scene, dict(zip(self.names, albedos)), self.folder)
         missing = self.picture - self.render(2 * turn)
         derivatives = np.stack([self.render(2 * turn + 1, each) for each in self.numbers], axis=-1)
         changed = albedos.copy()

@@ -107,7 +107,8 @@ class ObjFile:
     def __init__(self, path, files, materials=None):
         self.path, self.files = path, files
         self.materials = []  # of the triangles
-        self._available, self._libraries, self._is_noted = {}, set(), False
+        self.libraries = {materials: None} if materials else {}  # the MTL files that were read, in order
+        self._available, self._is_noted = {}, False
         positions, texture_coordinates, normals, corners = [], [], [], []
         material = grey = None
         text = files.read_text(path)
@@ -145,8 +146,8 @@ class ObjFile:
         folder = self.path.parent
         for name in [names.replace("\\", ""), *names.split()]:
             if (folder / name).is_file():
-                if folder / name not in self._libraries:
-                    self._libraries.add(folder / name)
+                if folder / name not in self.libraries:
+                    self.libraries[folder / name] = None
                     self._available = {**read_mtl(folder / name, folder, self.files), **self._available}
                 return
         self._note_missing(f"{where}: there is no material file '{names}'")
@@ -181,6 +182,11 @@ class ObjFile:
         for name, array in arrays.items():
             array[facing < 0] = array[facing < 0][:, [0, 2, 1]]
             setattr(self, name, array)
+
+
+def materials_in_order(mesh):
+    """The materials of a mesh in the renderer's order: that in which its faces use them, glass after all others."""
+    return sorted(dict.fromkeys(mesh.materials), key=lambda material: material.refractive_index > 0)
 
 
 def triangle_normals(positions):

@@ -14,7 +14,7 @@ from material_keywords import KEYWORDS
 from project import UserError
 from references.bodies import Bodies, Body, connected_parts
 from references.lamps import resolve_lamps
-from references.meshes import Material, ObjFile, triangle_normals
+from references.meshes import Material, ObjFile, materials_in_order, triangle_normals
 
 
 class SourceFiles:
@@ -201,6 +201,11 @@ def read_description(path, files):
     return {"meshes": [{"file": path.name}]} if path.suffix.lower() == ".obj" else json.loads(files.read_text(path))
 
 
+def mesh_files(path, entry):
+    """The OBJ file of an entry of a scene's "meshes", and the MTL file that stands for its own, or None."""
+    return tuple(name and path.parent / name for name in (entry["file"], entry.get("materials")))
+
+
 def read_scene(path):
     """Reads a scene with all its files, in the same order as the renderer, since the hash depends on it."""
     path = Path(path)
@@ -223,7 +228,7 @@ def read_scene(path):
         )
         meshes, indices, placements = [], {}, []
         for entry in root["meshes"]:
-            file, materials = path.parent / entry["file"], "materials" in entry and path.parent / entry["materials"]
+            file, materials = mesh_files(path, entry)
             key = file.resolve(), materials and materials.resolve()
             if key not in indices:
                 indices[key] = len(meshes)
@@ -233,7 +238,7 @@ def read_scene(path):
 
         textures = set()
         for mesh in meshes:
-            for material in sorted(dict.fromkeys(mesh.materials), key=lambda m: m.refractive_index > 0):
+            for material in materials_in_order(mesh):
                 limit_reflectance(material, root.get("specular", False))
                 if material.texture and material.texture.resolve() not in textures:
                     textures.add(material.texture.resolve())
