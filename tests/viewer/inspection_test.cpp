@@ -14,6 +14,19 @@ class InspectionTest : public ViewerTest {
     void wait_for_verdict() {
         wait_until("a verdict", [&] { return session().latest_verdict() != nullptr; });
     }
+    void wait_for_full_size() {
+        wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    }
+    // Opens a chapter with a shipped scene in a small picture, and waits for its first sample.
+    void open_small(const std::string& chapter, const char* scene, uvec2 size) {
+        chapter_ = load_chapter(chapter_named(chapter));
+        Options options = make_options();
+        options.scene.file = scenes / scene;
+        options.image.width = size.x;
+        options.image.height = size.y;
+        open(options);
+        wait_for_full_size();
+    }
     // Pixels of the last screenshot for whose red, green and blue, each up to 255, is_counted() is true.
     template <typename IsCounted>
     size_t count_pixels(const IsCounted& is_counted) {
@@ -83,7 +96,7 @@ TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy) {
     open(options_with_reference());
     wait_for_verdict();
     hold(GLFW_KEY_W, 2);
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    wait_for_full_size();
     EXPECT_EQ(session().verdict(), nullptr);
     EXPECT_EQ(session().verdict_text(), "no verdict: the camera has changed");
     EXPECT_TRUE(session().has_moved());
@@ -95,7 +108,7 @@ TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy) {
 
 TEST_F(InspectionTest, AClickFollowsAPathAndADragDoesNot) {
     open(options_with_reference());
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    wait_for_full_size();
     drag({500, 400}, {520, 400});
     EXPECT_FALSE(inspection().selection());
     click(500, 450);
@@ -129,7 +142,7 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
     options.image.width = 180;
     options.image.height = 120;
     open(options, {900, 1000});
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    wait_for_full_size();
     click(630, 524);  // a ball
     wait_until("a path", [&] { return inspection().path().has_value() && inspection().path()->vertices.front().is_hit; });
     take_screenshot("viewer_lens");
@@ -141,7 +154,7 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
     session().focus_on(first.position);
     run_frames(1);
     EXPECT_NE(session().camera().focus_distance, before.focus_distance);
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    wait_for_full_size();
     wait_until("a path", [&] { return inspection().path().has_value(); });
     take_screenshot("viewer_focused");
     const Camera& camera = inspection().parameters().camera;
@@ -156,13 +169,7 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
 
 // A point in fog has no surface to look from.
 TEST_F(InspectionTest, CollisionsInFogAreGreen) {
-    chapter_ = load_chapter(chapter_named("media"));
-    Options options = make_options();
-    options.scene.file = scenes / "fog.json";
-    options.image.width = 96;
-    options.image.height = 64;
-    open(options);
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    open_small("media", "fog.json", {96, 64});
     size_t paths_with_green = 0;
     for (float x = 500; x < 800; x += 30) {
         click(x, 200);
@@ -191,7 +198,7 @@ TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
         return count_pixels([](int r, int g, int b) { return g > r + 60 && g > b + 60; });
     };
     open(options);
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    wait_for_full_size();
     click(640, 500);  // the floor
     const size_t by_tree = green_pixels("viewer_branch");
     const auto& lights = inspection().path()->vertices.front().light_samples;
@@ -213,13 +220,7 @@ TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
 
 // The path from the lamp that belongs to the same sample.
 TEST_F(InspectionTest, LightPathsAreOrange) {
-    chapter_ = load_chapter(chapter_named("light_paths"));
-    Options options = make_options();
-    options.scene.file = scenes / "caustics.json";
-    options.image.width = 90;
-    options.image.height = 60;
-    open(options);
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    open_small("light_paths", "caustics.json", {90, 60});
     size_t most = 0;
     for (const float x : {500.0f, 560.0f, 640.0f, 720.0f}) {
         click(x, 300);
@@ -332,7 +333,7 @@ TEST_F(InspectionTest, NothingLiesOnThePictureWhileAPathIsShown_all) {
         return vec2(where.corner) + position * vec2(where.size - 1);
     };
     const vec2 floor = point_of_picture({0.4f, 0.85f});
-    wait_until("full size", [&] { return session().reduction() == 1 && session().samples() >= 1; });
+    wait_for_full_size();
     click(floor.x, floor.y);
     wait_until("the hemisphere", [&] { return inspection().has_hemisphere() && inspection().hemisphere().samples() >= 2; });
     const auto resize = [&](const uvec2& size) {
