@@ -62,7 +62,7 @@ class HeadlessRender {
             if (size != job_.parameters.image_size)
                 throw UserError(options_.reference.string() + ": has " + size_text(size) + " pixels, the image has " +
                                 size_text(job_.parameters.image_size) + ": they must agree");
-            const std::string difference = mismatch(*reference_, *job_.scene, job_.parameters);
+            const std::string difference = mismatch(*reference_, job_);
             if (!difference.empty() && !options_.quiet)
                 std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(), difference.c_str());
         }
@@ -196,7 +196,7 @@ class HeadlessRender {
     void print_summary() const {
         const auto mean = snapshot_.mean_radiance();
         const double new_seconds = header_.seconds - job_.header.seconds;
-        const bool shows_radiance = job_.shown_instead.empty(), shows_light = !job_.options.image.view;
+        const bool shows_radiance = job_.header.shows.empty(), shows_light = !job_.options.image.view;
         const bool is_last_row = !rows_.empty() && rows_.back().rays == header_.rays;
         const std::optional<ErrorMetrics> error = is_last_row ? rows_.back().error : find_error();
         // Pixels are independent. Against a reference the error would include bias.

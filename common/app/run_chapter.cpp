@@ -118,6 +118,7 @@ void print_start(const Chapter& chapter, const Device& device, const Build& buil
     const RenderJob& job = build.job;
     std::cout << chapter.name << ", " << job.header.scene << ", " << size_text(job.parameters.image_size) << ", " << job.samples
               << " samples, " << device.description().name << ", backend " << to_string(build.backend) << std::endl;
+    if (!job.header.shows.empty()) std::cout << "shows          " << job.header.shows << std::endl;
     if (ends_at_safety_limit(chapter, *job.scene, job.options))
         std::cout << "path length    " << safety_limit_text(*job.scene) << std::endl;
     if (const std::string note = build.renderer->tracer().note(); !note.empty()) std::cout << note << std::endl;
@@ -184,6 +185,26 @@ std::vector<std::string> unused_options(const Chapter& chapter, const RenderJob&
     return unused;
 }
 
+// One line for each choice that was given but shows nothing: instead of a view, or of a material that the scene lacks.
+std::vector<std::string> futile_choices(const Chapter& chapter, const RenderJob& job) {
+    const std::vector<std::string>& materials = job.scene->material_names;
+    std::vector<std::string> futile;
+    for (const ChapterChoice& choice : chapter.choices) {
+        const size_t value = value_of(choice, job.options);
+        if (value == 0) continue;
+        if (job.options.image.view) {
+            futile.push_back(choice.name + " has no effect on --view " + job.options.image.view->name);
+        } else if (choice.chooses_material && value > materials.size()) {
+            std::string names;
+            for (const std::string& name : materials) names += (names.empty() ? "" : ", ") + in_quotes(name);
+            futile.push_back(choice.name + ' ' + choice.values[value].first + " shows nothing: " + job.scene->file.string() +
+                             " has " + std::to_string(materials.size()) +
+                             (materials.size() == 1 ? " material: " : " materials: ") + names);
+        }
+    }
+    return futile;
+}
+
 // Prints what is worth knowing about the scene of a job. Throws UserError if a report would describe another picture.
 void print_warnings(const Chapter& chapter, const RenderJob& job, bool has_window) {
     std::vector<std::string> warnings = job.scene->warnings;
@@ -205,6 +226,7 @@ void print_warnings(const Chapter& chapter, const RenderJob& job, bool has_windo
         warnings.push_back(asked_by + ": " + chapter.name + " leaves out its " + what + use);
     }
     for (std::string& warning : unused_options(chapter, job, has_window)) warnings.push_back(std::move(warning));
+    for (std::string& warning : futile_choices(chapter, job)) warnings.push_back(std::move(warning));
     const bool has_light = features.area_lights || features.light_probe || background_of(*job.scene, job.options) != vec3(0);
     if (!has_light && !job.options.image.view)
         warnings.push_back(job.scene->file.string() + ": nothing emits light: give a material Ke, or use --background 1,1,1");

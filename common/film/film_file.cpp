@@ -28,8 +28,8 @@ T number(const ExrFile& exr, const std::string& name, const std::filesystem::pat
 constexpr std::pair<const char*, std::string FilmHeader::*> texts[] = {
     {"chapter", &FilmHeader::chapter},       {"scene", &FilmHeader::scene},
     {"scene_hash", &FilmHeader::scene_hash}, {"estimator_hash", &FilmHeader::estimator_hash},
-    {"settings", &FilmHeader::settings},     {"backend", &FilmHeader::backend},
-    {"device", &FilmHeader::device}};
+    {"settings", &FilmHeader::settings},     {"shows", &FilmHeader::shows},
+    {"backend", &FilmHeader::backend},       {"device", &FilmHeader::device}};
 
 std::string to_text(double value) {
     char buffer[32];

@@ -15,6 +15,7 @@ struct FilmHeader {
     std::string scene_hash;      // of all its files
     std::string estimator_hash;  // of the shaders that it is compiled from
     std::string settings;        // the options that change the expected image, in a fixed order
+    std::string shows;           // what the picture shows instead of radiance; empty if it shows radiance
     std::string backend;
     std::string device;
     uint32_t seed = 0;

@@ -57,11 +57,12 @@ std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::st
     std::vector<ChapterChoice> choices;
     if (!chapter.has("choices")) return choices;
     for (const nlohmann::json& content : chapter.array("choices")) {
-        const JsonObject choice(content, file, "a choice", {"name", "help", "values", "shows"});
+        const JsonObject choice(content, file, "a choice", {"name", "help", "values", "shows", "chooses_material"});
         choices.push_back({choice.required("name", choice.text("name")),
                            choice.required("help", choice.text("help")),
                            {},
-                           choice.text("shows").value_or("")});
+                           choice.text("shows").value_or(""),
+                           choice.boolean("chooses_material").value_or(false)});
         if (!choices.back().name.starts_with("--")) choice.fail("name", "must begin with --");
         for (const nlohmann::json& value : choice.array("values")) {
             if (!value.is_array() || value.size() != 2 || !value[0].is_string() || !value[1].is_string())

@@ -25,7 +25,8 @@ struct ChapterChoice {
     std::string name;  // "--facet-sampling"
     std::string help;
     std::vector<std::pair<std::string, std::string>> values;  // on the command line and in the shader, the default first
-    std::string shows = {};  // what the picture shows instead of radiance, unless it has the default; empty if radiance
+    std::string shows = {};         // what the picture shows instead of radiance, unless it has the default; empty if radiance
+    bool chooses_material = false;  // the values after the default are the scene's materials, in its order
 
     std::string define() const;
 };

@@ -73,8 +73,8 @@ void set_options(RenderJob& job, const Chapter& chapter, const Options& options)
     job.options = options;
     job.parameters = make_parameters(chapter, *job.scene, options);
     job.samples = options.appearance.sample_count.value_or(job.scene->defaults.samples);
-    job.shown_instead = shown_instead(chapter, options);
     job.header.settings = settings_text(chapter, job.parameters, *job.scene, options);
+    job.header.shows = shown_instead(chapter, *job.scene, options);
     job.header.seed = options.samples.seed;
     job.header.first_sample = options.samples.first_sample;
     job.header.seconds = 0;

@@ -16,7 +16,6 @@ struct RenderJob {
     uint32_t samples = 0;  // target per pixel
     FilmHeader header = {};
     std::optional<FilmFile> resumed = {};  // the run that this one continues
-    std::string shown_instead = {};        // of radiance, see settings.h; empty if the picture shows radiance
     bool may_be_refused = false;           // for "auto": the caller is prepared for a backend that refuses the shader
 };
 

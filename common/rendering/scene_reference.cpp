@@ -89,14 +89,18 @@ std::optional<VerdictSettings> settings_for_verdict(const Scene& scene, const Re
     return nearest;
 }
 
-std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters) {
+std::string mismatch(const Reference& reference, const RenderJob& job) {
     const auto value = [&](const std::string& name, const std::string& otherwise) {
         const auto found = reference.attributes.find(name);
         return found == reference.attributes.end() ? otherwise : found->second;
     };
-    const std::string hash = hexadecimal(scene.hash), length = std::to_string(parameters.max_path_length);
+    const std::string &hash = job.header.scene_hash, length = std::to_string(job.parameters.max_path_length);
     if (value("scene_hash", hash) != hash)
         return "shows " + value("scene", "another scene") + ", the image shows another scene or another version of it";
+    const auto or_radiance = [](const std::string& shows) { return shows.empty() ? "radiance" : shows; };
+    const std::string reference_shows = value("shows", "");
+    if (reference_shows != job.header.shows)
+        return "shows " + or_radiance(reference_shows) + ", the image shows " + or_radiance(job.header.shows);
     const std::string reference_length = value("max_path_length", length);
     if (reference_length != length)
         return "has paths of at most " + reference_length + " bounces, the image has paths of at most " + length +

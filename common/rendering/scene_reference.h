@@ -3,7 +3,7 @@
 #include <optional>
 #include <variant>
 
-#include "rendering/renderer.h"
+#include "rendering/render_job.h"
 #include "statistics/error_metrics.h"
 
 namespace lab {
@@ -22,7 +22,8 @@ struct VerdictSettings {
 // differ from it in more than path length and size.
 std::optional<VerdictSettings> settings_for_verdict(const Scene& scene, const RenderParameters& parameters);
 
-// In one line, how a reference's attributes contradict the image: another scene or path length. Empty if they do not.
-std::string mismatch(const Reference& reference, const Scene& scene, const RenderParameters& parameters);
+// In one line, how a reference's attributes contradict the image: another scene or path length, or something else than the image
+// shows. Empty if they do not.
+std::string mismatch(const Reference& reference, const RenderJob& job);
 
 }  // namespace lab

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "error.h"
+#include "files/file.h"
 #include "files/project_folder.h"
 #include "rendering/numbers_text.h"
 #include "scene/material_keywords.h"
@@ -92,10 +93,15 @@ size_t value_of(const ChapterChoice& choice, const Options& options) {
     return given == options.estimator.choices.end() ? 0 : given->second;
 }
 
-std::string shown_instead(const Chapter& chapter, const Options& options) {
+std::string shown_instead(const Chapter& chapter, const Scene& scene, const Options& options) {
     if (options.image.view) return "the view " + options.image.view->name;
-    for (const ChapterChoice& choice : chapter.choices)
-        if (value_of(choice, options) > 0 && !choice.shows.empty()) return choice.shows;
+    for (const ChapterChoice& choice : chapter.choices) {
+        const size_t value = value_of(choice, options), materials = scene.material_names.size();
+        if (value == 0 || choice.shows.empty()) continue;
+        if (!choice.chooses_material || value > materials) return choice.shows;
+        return choice.shows + " (material " + std::to_string(value) + " of " + std::to_string(materials) + ": " +
+               in_quotes(scene.material_names[value - 1]) + ")";
+    }
     return {};
 }
 

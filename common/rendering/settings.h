@@ -35,7 +35,7 @@ Estimator estimator_of(const Chapter& chapter);
 size_t value_of(const ChapterChoice& choice, const Options& options);
 
 // What the picture shows under these options instead of radiance; empty if it shows radiance.
-std::string shown_instead(const Chapter& chapter, const Options& options);
+std::string shown_instead(const Chapter& chapter, const Scene& scene, const Options& options);
 
 // How the chapter's estimator finds light under these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);

@@ -155,6 +155,7 @@ class Assembly {
         limit_reflectance(obj, source.name, material);
         if (!source.albedo_texture.empty()) material.albedo_texture = add_texture(source.albedo_texture);
         scene_.materials.push_back(material);
+        scene_.material_names.push_back(source.name);
         scene_.microfacets.push_back(source.microfacets);
         if (source.microfacets.coat_index > 0) add_albedo(obj, scene_.microfacets.back());
         return static_cast<uint32_t>(scene_.materials.size() - 1);

@@ -67,10 +67,11 @@ struct Scene {
     std::vector<uvec3> triangles;           // indices of positions, counter-clockwise seen from the front
     std::vector<uint32_t> triangle_materials;
     std::vector<Material> materials;
-    std::vector<Microfacets> microfacets;  // per material; empty if none has any
-    bool multiple_scattering = false;      // whether to add light that microfacets reflect several times
-    std::vector<uvec2> double_sided;       // pairs of opaque triangles in one place that face opposite ways; the second has the
-                                           // corners of the first in reverse, starting from the same one
+    std::vector<std::string> material_names;  // per material, as its file says; empty for faces without a material
+    std::vector<Microfacets> microfacets;     // per material; empty if none has any
+    bool multiple_scattering = false;         // whether to add light that microfacets reflect several times
+    std::vector<uvec2> double_sided;  // pairs of opaque triangles in one place that face opposite ways; the second has the
+                                      // corners of the first in reverse, starting from the same one
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<uint32_t> instance_meshes;  // per instance

@@ -134,7 +134,7 @@ void Session::begin(uint32_t reduction) {
     verdict_ = find_verdict();
     verdict_settings_.reset();
     const RenderJob& job = build_->job;
-    if (!verdict() && reduction_ == 1 && job.shown_instead.empty())
+    if (!verdict() && reduction_ == 1 && job.header.shows.empty())
         verdict_settings_ = lab::settings_for_verdict(*job.scene, job.parameters);
 }
 
@@ -148,7 +148,7 @@ void Session::change_for_verdict() {
 std::variant<LiveVerdict, std::string> Session::find_verdict() const {
     const RenderJob& job = build_->job;
     if (reduction_ > 1) return "the picture is reduced";
-    if (!job.shown_instead.empty()) return "the picture shows " + job.shown_instead;
+    if (!job.header.shows.empty()) return "the picture shows " + job.header.shows;
     try {
         auto reference = find_reference(*job.scene, job.parameters);
         if (const auto* why = std::get_if<std::string>(&reference)) return *why;

@@ -178,3 +178,35 @@ class ChapterRenders(RenderTest):
         self.assertEqual(default.text("settings"), pictures[0].text("settings"))
         self.assertEqual(len({str(picture.pixels()) for picture in pictures}), len(ways))
         self.assertEqual(len({picture.text("settings") for picture in pictures}), len(ways))
+
+    def test_a_derivative_says_of_which_material(self):
+        def shown(*arguments):
+            """What the program says on its standard output and in its notes."""
+            _, out, err = self.run_program(*self.command("--samples=1"), *arguments, program=BINARIES / derivatives[0])
+            return "".join(re.findall(r"(?m)^shows +(.*)", out)), err
+
+        derivatives = [
+            chapter
+            for chapter in CHAPTERS
+            if any(choice["name"] == "--derivative" for choice in description(chapter).get("choices", []))
+        ]
+        red, green = (f'a derivative (material {i} of 4: "{name}")' for i, name in ((2, "red"), (3, "green")))
+        self.assertEqual(shown("--output=light.exr"), ("", ""))
+        self.assertEqual(shown("--output=red.exr", "--derivative=2"), (red, ""))
+        self.assertEqual(Exr(self.folder / "red.exr").text("shows"), red)
+        _, note = shown("--output=none.exr", "--derivative=5")
+        self.assertRegex(
+            note, r'\Anote: --derivative 5 shows nothing: .*cornell_box\.json has 4 materials: "white", "red", .*\n\Z'
+        )
+        _, note = shown("--output=normals.exr", "--derivative=2", "--view=normals")
+        self.assertEqual(note, "note: --derivative has no effect on --view normals\n")
+        for reference, arguments, note in (
+            ("light", [], ""),
+            ("red", ["--derivative=2"], ""),
+            ("red", ["--derivative=3"], f"note: red.exr: shows {red}, the image shows {green}\n"),
+            ("red", [], f"note: red.exr: shows {red}, the image shows radiance\n"),
+            ("light", ["--derivative=2"], f"note: light.exr: shows radiance, the image shows {red}\n"),
+            ("normals", [], "note: normals.exr: shows the view normals, the image shows radiance\n"),
+        ):
+            with self.subTest(reference=reference, arguments=arguments):
+                self.assertEqual(shown(f"--reference={reference}.exr", *arguments, "--output=compared.exr")[1], note)

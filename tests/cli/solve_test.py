@@ -5,7 +5,8 @@ import re
 import shutil
 import unittest
 
-from program import ProgramTest  # first: it finds the tools
+from program import BINARIES, ProgramTest  # first: it finds the tools
+from lesson.solve import CHAPTER
 from project import ROOT
 from references.albedos import materials_of, write_scene
 from references.images import scene_file
@@ -14,15 +15,25 @@ PICTURE = ROOT / "assets/references/cornell_box_6.exr"  # from another renderer
 
 
 class SolveTest(ProgramTest):
-    def found(self, *arguments):
-        """What the last step found: name -> three numbers."""
-        code, out, err = self.run_tool("solve", *arguments)
-        self.assertEqual((code, err), (0, ""))
-        parts = re.findall(r"(\w+) ([\d.]+) ([\d.]+) ([\d.]+)", out.splitlines()[-1].split(maxsplit=2)[2])
-        return {name: list(map(float, numbers)) for name, *numbers in parts}
+    def solve(self, *arguments):
+        """What the last step found, name -> three numbers, and two errors in per cent: of the picture, and of noise alone."""
+        code, out, self.notes = self.run_tool("solve", *arguments)
+        self.assertEqual(code, 0, self.notes)
+        *_, last, errors = out.splitlines()
+        parts = re.findall(r"(\w+) ([\d.]+) ([\d.]+) ([\d.]+)", last.split(maxsplit=2)[2])
+        errors = re.fullmatch(r"error (\S+) %; noise alone would leave (\S+) %", errors).groups()
+        return {name: list(map(float, numbers)) for name, *numbers in parts}, list(map(float, errors))
+
+    def render_small(self, name, *arguments, scene="cornell_box"):
+        """A small picture by the chapter of ./lab solve."""
+        file = self.folder / name
+        self.render(scene, "--headless", "--width=48", "--height=48", "--output", file, *arguments, program=BINARIES / CHAPTER)
+        return file
 
     def test_finds_the_colours_of_two_walls(self):
-        found = self.found("cornell_box", PICTURE, "red", "green", "--samples", 32)
+        found, (error, noise) = self.solve("cornell_box", PICTURE, "red", "green", "--samples", 32)
+        self.assertEqual(self.notes, "")
+        self.assertAlmostEqual(error / noise, 1, delta=0.1)
         for name, albedo in (("red", (0.62, 0.12, 0.1)), ("green", (0.16, 0.46, 0.13))):
             for value, expected in zip(found[name], albedo):
                 self.assertAlmostEqual(value / expected, 1, delta=0.02)
@@ -32,8 +43,23 @@ class SolveTest(ProgramTest):
         (folder / "scenes").mkdir(parents=True)
         shutil.copy(scene_file("cornell_box"), folder / "scenes")
         shutil.copytree(ROOT / "assets/meshes", folder / "meshes")
-        found = self.found(folder / "scenes/cornell_box.json", PICTURE, "red", "--steps", 1, "--samples", 4)
+        found, _ = self.solve(folder / "scenes/cornell_box.json", PICTURE, "red", "--steps", 1, "--samples", 4)
         self.assertEqual(list(found), ["red"])
+
+    def test_knows_the_noise_and_the_path_length_of_a_chapter_s_picture(self):
+        for samples in (3, 16):  # halves of different and of equal size
+            picture = self.render_small("picture.exr", f"--samples={samples}", "--max-path-length=2")
+            _, (error, noise) = self.solve("cornell_box", picture, "red", "green", "--samples", 15)
+            self.assertEqual(self.notes, "")
+            self.assertAlmostEqual(error / noise, 1, delta=0.15)
+
+    def test_says_if_albedos_do_not_explain_the_picture(self):
+        picture = self.render_small("sky.exr", "--samples=16", "--background=0.2,0.2,0.2")
+        self.solve("cornell_box", picture, "red", "--samples", 16)
+        self.assertRegex(self.notes, r"\Anote: these albedos do not explain the picture: .*\n\Z")
+        picture = self.render_small("bright.exr", "--samples=16", scene="furnace")
+        self.solve("cornell_box", picture, "red", "--samples", 4)
+        self.assertRegex(self.notes, r"\A.*\nnote: red: its albedo ended at the bound 1\n\Z")
 
     def test_reads_materials_as_the_chapters_do(self):
         """A file that stands for the mesh's own, with tabs, comments, and glass, which comes last."""
@@ -58,6 +84,9 @@ class SolveTest(ProgramTest):
             ["solve", "cornell_box", ROOT / "docs/pictures/derivatives.jpg", "red"], "cannot be read as an EXR"
         )
         self.assert_tool_refused(["solve", "cornell_box", "nothing.exr", "red"], "there is no such file")
+        self.assert_tool_refused(["solve", "cornell_box", PICTURE, "red", "green", "red"], "red: is named twice")
+        derivative = self.render_small("derivative.exr", "--samples=1", "--derivative=2")
+        self.assert_tool_refused(["solve", "cornell_box", derivative, "red"], 'shows a derivative .material 2 of 4: "red"')
 
 
 if __name__ == "__main__":

@@ -5,31 +5,54 @@
 The picture is an EXR of the scene from its own camera, and the names are those of materials in the scene's .mtl files. All start with the
 albedo 1/2. Each step renders the picture and the derivatives, and changes the albedos so that, by least squares over all pixels, the
 derivatives explain the difference. Picture and derivatives have different random numbers, since the product of their noise would
-otherwise not vanish on average.
+otherwise not vanish on average. The last line compares the error that remains, the root of the mean of relative squares, with that of
+noise alone: of the rendered picture, and of the other one if its file tells it.
 """
+import re
+import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 from project import CHAPTERS, Parser, UserError, add_device_options, failure_text, number, program_file, run_program
 from references.albedos import materials_of, write_scene
-from references.exr import Exr, read_attributes
-from references.images import scene_file
+from references.exr import Exr
+from references.images import Reference, scene_file
 
 CHAPTER = next((folder for folder in CHAPTERS.values() if folder.endswith("_derivatives")), None)
 START = 0.5
 LARGEST_STEP = 1.5  # of the logarithm of an albedo
 LOW, HIGH = 1e-3, 1.0  # of an albedo
+NOTEWORTHY = 1.2  # error that remains, in multiples of what noise alone leaves: 0.9 to 1.1 where the scene fits
 
 
-def read_picture(file):
-    """The picture in an EXR: array [row, column, channel]."""
+def variance(file):
+    """Of the pixels of an Exr, where it tells: array [row, column, channel]."""
+    if "variance.R" in file.channels:
+        return file.rgb("variance.")
+    if "difference.R" in file.channels:  # of halves; of an odd number of samples, one half has another sample
+        samples = int(file.attributes["samples"])
+        return file.rgb("difference.") ** 2 - samples % 2 * (file.rgb() / samples) ** 2
+    return np.zeros_like(file.rgb())
+
+
+def path_length(attributes):
+    """The maximal path length that a reference or a chapter's picture states, or None."""
+    stated = re.search(r"^\d+|(?<=--max-path-length )\d+", attributes.get("max_path_length") or attributes.get("settings", ""))
+    return stated and int(stated[0])
+
+
+def read_picture(path):
+    """The picture in an EXR."""
     try:
-        picture = Exr(file).rgb()
+        file = Exr(path)
+        picture = Reference(file.rgb(), variance(file), file.attributes)
     except (KeyError, ValueError) as error:
-        raise UserError(f"{file}: cannot be read as an EXR: {error}") from None
-    if not np.isfinite(picture).all():
-        raise UserError(f"{file}: some pixels are infinite or not a number")
+        raise UserError(f"{path}: cannot be read as an EXR: {error}") from None
+    if not np.isfinite(picture.mean).all():
+        raise UserError(f"{path}: some pixels are infinite or not a number")
+    if shows := file.attributes.get("shows"):
+        raise UserError(f"{path}: shows {shows}: give a picture of the scene's light")
     return picture
 
 
@@ -39,34 +62,36 @@ class Solver:
     def __init__(self, scene, picture, names, options, folder):
         self.scene, self.names, self.options, self.folder = scene, names, options, folder
         self.picture = read_picture(picture)
-        self.length = options.max_path_length or int(read_attributes(picture).get("max_path_length", 0))
+        self.length = options.max_path_length or path_length(self.picture.attributes)
         known = [material.name for material in materials_of(scene)]
         for name in names:
+            if names.count(name) > 1:
+                raise UserError(f"{name}: is named twice")
             if known.count(name) != 1:
                 raise UserError(
                     f"{name}: {'several materials have' if name in known else 'no material has'} this name: {', '.join(known)}"
                 )
         self.numbers = [1 + known.index(name) for name in names]
 
-    def render(self, seed, material=None):
-        """The picture, or its derivative with respect to the logarithm of the albedo of the material with this number."""
+    def render(self, seed, samples, material=None):
+        """An Exr of the picture, or of its derivative with respect to the logarithm of the albedo of the material with this number."""
         options, file = self.options, self.folder / "picture.exr"
-        height, width, _ = self.picture.shape
+        height, width, _ = self.picture.mean.shape
         command = [program_file(CHAPTER), self.folder / "scene.json", "--headless", "--quiet", "--output", file]
-        command += [f"--width={width}", f"--height={height}", f"--samples={options.samples}", f"--seed={seed}"]
+        command += [f"--width={width}", f"--height={height}", f"--samples={samples}", f"--seed={seed}"]
         command += [f"--backend={options.backend}"]
         command += ["--max-path-length", self.length] if self.length else []
         command += ["--device", options.device] if options.device else []
         process = run_program([*command, *(["--derivative", material] if material else [])])
         if process.returncode != 0:
             raise UserError(failure_text(process))
-        return Exr(file).rgb()
+        return Exr(file)
 
     def step(self, albedos, turn):
         """The albedos after one step."""
         write_scene(self.scene, dict(zip(self.names, albedos)), self.folder)
-        missing = self.picture - self.render(2 * turn)
-        derivatives = np.stack([self.render(2 * turn + 1, each) for each in self.numbers], axis=-1)
+        missing = self.picture.mean - self.render(2 * turn, self.options.samples).rgb()
+        derivatives = np.stack([self.render(2 * turn + 1, self.options.samples, each).rgb() for each in self.numbers], axis=-1)
         changed = albedos.copy()
         for channel in range(3):
             # All pixels weigh the same: weights from the picture would prefer those that its noise has made dark.
@@ -74,6 +99,17 @@ class Solver:
             change = np.linalg.lstsq(derivatives[..., channel, :].reshape(len(wanted), -1), wanted, rcond=None)[0]
             changed[:, channel] *= np.exp(np.clip(change, -LARGEST_STEP, LARGEST_STEP))
         return np.clip(changed, LOW, HIGH)
+
+    def errors(self, albedos, turn):
+        """The relative error that remains with these albedos, and that of the noise in both pictures alone."""
+        write_scene(self.scene, dict(zip(self.names, albedos)), self.folder)
+        rendered = self.render(2 * turn, self.options.samples + self.options.samples % 2)  # a single one tells no noise
+        pixels = rendered.rgb()
+        # Relative to the larger of two values: noise that makes a pixel of the picture dark would otherwise make its error large.
+        larger = np.maximum(pixels, self.picture.mean)
+        weights = 1 / np.maximum(larger**2 + 0.01 * larger.mean() ** 2, 1e-30)
+        squares = (pixels - self.picture.mean) ** 2, self.picture.variance + variance(rendered)
+        return [float((weights * square).mean()) ** 0.5 for square in squares]
 
 
 def main():
@@ -103,3 +139,13 @@ def main():
                 f"{name} {' '.join(f'{v:.4f}' for v in albedo)}" for name, albedo in zip(options.material, albedos)
             )
             print(f"step {turn}   {found}", flush=True)
+        error, noise = solver.errors(albedos, options.steps + 1)
+        print(f"error {100 * error:.3g} %; noise alone would leave {100 * noise:.3g} %")
+        if error > NOTEWORTHY * noise:
+            print(
+                "note: these albedos do not explain the picture: try more --steps, or look for what else differs", file=sys.stderr
+            )
+        for name, albedo in zip(options.material, albedos):
+            for bound in (LOW, HIGH):
+                if (albedo == bound).any():
+                    print(f"note: {name}: its albedo ended at the bound {bound:g}", file=sys.stderr)
