@@ -18,6 +18,7 @@ QUESTIONS = {  # name: module
     "export": "tables.export",
     "false_alarms": "measure.false_alarms",
     "figures": "tables.figures",
+    "filters": "measure.filters",
     "hard_cases": "measure.hard_cases",
     "install_peer": "peers.install_peer",
     "large_picture": "measure.large_picture",

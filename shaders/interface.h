@@ -56,6 +56,9 @@ SHARED_CONSTANT BINDING_LIGHT_PLACES = 29u;
 SHARED_CONSTANT BINDING_BOUNDARY_PLACES = 30u;
 SHARED_CONSTANT BINDING_OVERLAPS = 31u;
 SHARED_CONSTANT BINDING_SPLATS = 34u;  // 32 and 33 are those of world_triangles.h
+SHARED_CONSTANT BINDING_FILTER_FILMS = 35u;
+SHARED_CONSTANT BINDING_FILTER_INPUT = 36u;
+SHARED_CONSTANT BINDING_FILTER_OUTPUT = 37u;
 
 // How light scatters at a surface. The ray tracing pipeline has a hit group for each class that a scene uses.
 SHARED_CONSTANT MATERIAL_CLASS_DIFFUSE = 0u;
@@ -222,8 +225,8 @@ struct DispatchParameters {
 // fifth, … samples and the others form independent halves, even where the samples within a half are correlated: their difference
 // estimates the error. It stays small enough to need no compensation.
 struct FilmPixel {
-    vec3 sum;
-    vec3 compensation;
+    vec3 sum;            // of the samples' radiance
+    vec3 compensation;   // what rounding has taken from the sum
     vec3 difference;     // sum of the first, third, … sample minus that of the others
     uint sample_count;   // includes the invalid ones
     uint invalid_count;  // samples that were infinite or not a number; they add 0
@@ -244,6 +247,34 @@ struct DisplayParameters {
     uint is_srgb;             // 1: encode with the sRGB curve
     uint divides_by_largest;  // 1: divide by the largest value, 2: only look for it
     float splat_unit;         // see SPLAT_WORDS
+};
+
+// A pixel of a picture that is being filtered: what the two halves of its samples show, see FilmPixel.
+struct FilterPixel {
+    vec3 mean[2];      // of each half
+    vec3 variance[2];  // of these means
+};
+
+// The films that a filter reads: the picture now and with fewer samples, what it shows of emission at the same samples, and what
+// its camera rays see.
+SHARED_CONSTANT FILM_NOW = 0u;
+SHARED_CONSTANT FILM_BEFORE = 1u;           // the same picture with fewer samples
+SHARED_CONSTANT FILM_EMISSION = 2u;         // what needs no bounce, at the same samples
+SHARED_CONSTANT FILM_EMISSION_BEFORE = 3u;  // what needs no bounce, at the fewer samples
+SHARED_CONSTANT FILM_ALBEDO = 4u;           // diffuse albedo that the camera rays see
+SHARED_CONSTANT FILM_NORMALS = 5u;          // normals that they see
+SHARED_CONSTANT FILTER_FILM_COUNT = 6u;
+
+// A step of shaders/engine/filter_steps.glsl: the first two prepare what is filtered, the last one makes a picture of it.
+SHARED_CONSTANT FILTER_STEP_INPUT = 0u;
+SHARED_CONSTANT FILTER_STEP_SMOOTH = 1u;
+SHARED_CONSTANT FILTER_STEP_PASS = 2u;
+SHARED_CONSTANT FILTER_STEP_PICTURE = 3u;
+struct FilterParameters {
+    uvec2 image_size;  // in pixels
+    uint first_block;  // of this dispatch
+    uint step;         // one of the constants above
+    uint pass;         // of the filter, the first is 0
 };
 
 #ifdef __cplusplus

@@ -20,6 +20,7 @@ void trace_light_paths(uvec2 position, uint first, uint end, uint step) {
     }
 }
 
+// The samples of a pixel: first all light paths, then all camera paths.
 void render_samples(uvec2 position, uint first, uint end, uint step) {
     trace_light_paths(position, first, end, step);
     Path path;

@@ -55,7 +55,11 @@ class Progress {
 class HeadlessRender {
   public:
     explicit HeadlessRender(Build& build)
-        : job_(build.job), options_(job_.options.run), renderer_(*build.renderer), scene_backend_(*build.scene_backend) {
+        : job_(build.job),
+          options_(job_.options.run),
+          renderer_(*build.renderer),
+          denoiser_(build.denoiser.get()),
+          scene_backend_(*build.scene_backend) {
         if (!options_.reference.empty()) {
             reference_ = read_reference(options_.reference);
             const uvec2 size(reference_->mean.width, reference_->mean.height);
@@ -66,7 +70,9 @@ class HeadlessRender {
             if (!difference.empty() && !options_.quiet)
                 std::fprintf(stderr, "note: %s: %s\n", options_.reference.string().c_str(), difference.c_str());
         }
-        if (job_.resumed) take_snapshot();
+        if (!job_.resumed) return;
+        take_snapshot();
+        if (denoiser_) denoiser_->keep(snapshot_);
     }
 
     void run() {
@@ -80,6 +86,7 @@ class HeadlessRender {
             write_after_failure(error, snapshot_, [&] { write_outputs(); });
         }
         if (!snapshot_.exceeds(0)) throw UserError("stopped before the first sample: nothing was written");
+        filter_snapshot();
         write_outputs();
         remove_interrupt_handler();
         if (!options_.quiet)
@@ -104,6 +111,7 @@ class HeadlessRender {
             done = next;
             add_row(done);
             if (is_accurate()) return;
+            if (denoiser_ && done < job_.samples) denoiser_->keep(renderer_.film().read());
         }
     }
 
@@ -133,6 +141,7 @@ class HeadlessRender {
         const double cpu_start = processor_seconds();
         take_snapshot();
         if (options_.save_every) try {
+                filter_snapshot();
                 write_outputs();
             } catch (const UserError& error) {
                 // By the time the render ends the disk may have room again.
@@ -151,26 +160,44 @@ class HeadlessRender {
         header_ = job_.header;
         header_.seconds = seconds_so_far;
         header_.rays += renderer_.rays();
+        filtered_.reset();
+        filter_error_.reset();
     }
+
+    // Makes the filtered picture of the snapshot, if --filter asks for it. What remains after a failure is not filtered.
+    void filter_snapshot() {
+        if (!denoiser_ || filtered_ || !denoiser_->can_filter(snapshot_)) return;
+        filtered_ = denoiser_->filter(snapshot_);
+        filter_error_ =
+            reference_ ? measure_filter_error(*filtered_, snapshot_, *reference_) : estimate_filter_error(*filtered_, snapshot_);
+        header_.seconds += denoiser_->cost().seconds;
+        header_.filter = job_.filter.name;
+    }
+
+    const FilmImage& picture() const { return filtered_ ? *filtered_ : snapshot_; }
 
     void add_row(uint32_t samples) {
         if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
         const auto start = Clock::now();
         const double cpu_start = processor_seconds();
         take_snapshot();
+        filter_snapshot();
+        const Denoiser::Cost filtering = filtered_ ? denoiser_->cost() : Denoiser::Cost{};
         rows_.push_back({.samples = samples,
                          .seconds = header_.seconds,
-                         .device_seconds = renderer_.device_seconds(),
-                         .cpu_seconds = cpu_start - unmeasured_cpu_seconds_,
+                         .device_seconds = renderer_.device_seconds() + filtering.device_seconds,
+                         .cpu_seconds = cpu_start - unmeasured_cpu_seconds_ + filtering.cpu_seconds,
                          .rays = header_.rays,
-                         .mean = snapshot_.mean_radiance(),
-                         .difference = snapshot_.mean_difference(),
-                         .error = find_error()});
+                         .mean = picture().mean_radiance(),
+                         .difference = picture().mean_difference(),
+                         .error = find_error(),
+                         .filter_error = filter_error_});
         measuring_seconds_ += seconds_since(start);
         unmeasured_cpu_seconds_ += processor_seconds() - cpu_start;
     }
 
     std::optional<ErrorMetrics> find_error() const {
+        if (filter_error_) return filter_error_->error;
         return reference_ ? compare(snapshot_.mean(), *reference_) : estimate_error(snapshot_);
     }
 
@@ -179,10 +206,10 @@ class HeadlessRender {
         if (!options_.report.empty()) files.push_back(options_.report);
         write_each(files, [&](const std::filesystem::path& file) {
             if (file == options_.report)
-                write_report(file, snapshot_, header_, scene_backend_, reference_ ? ErrorSource::reference : ErrorSource::halves,
+                write_report(file, picture(), header_, scene_backend_, reference_ ? ErrorSource::reference : ErrorSource::halves,
                              rows_);
             else
-                write_picture(file, snapshot_, header_, job_.options);
+                write_picture(file, picture(), header_, job_.options);
         });
     }
 
@@ -194,13 +221,13 @@ class HeadlessRender {
     }
 
     void print_summary() const {
-        const auto mean = snapshot_.mean_radiance();
+        const auto mean = picture().mean_radiance();
         const double new_seconds = header_.seconds - job_.header.seconds;
         const bool shows_radiance = job_.header.shows.empty(), shows_light = !job_.options.image.view;
         const bool is_last_row = !rows_.empty() && rows_.back().rays == header_.rays;
         const std::optional<ErrorMetrics> error = is_last_row ? rows_.back().error : find_error();
         // Pixels are independent. Against a reference the error would include bias.
-        const bool is_spread = error && !reference_;
+        const bool is_spread = error && !reference_ && !filtered_;
         std::printf("%-15s%.5g %.5g %.5g", shows_radiance ? "mean radiance" : "mean", mean[0], mean[1], mean[2]);
         if (is_spread) std::printf(" ± %.2g", std::sqrt(error->mse / static_cast<double>(snapshot_.pixels.size())));
         std::printf(" (red, green, blue%s)\n", is_spread ? "; standard error, on average" : "");
@@ -211,7 +238,15 @@ class HeadlessRender {
         std::printf("acceleration   structure of %s bytes, built in %s\n",
                     short_number(static_cast<double>(scene_backend_.bytes())).c_str(),
                     duration_text(scene_backend_.build_seconds()).c_str());
-        if (error && shows_light)
+        if (filter_error_)
+            std::printf(
+                "%-15s%.3g %% (root of the relative mean squared error, %s): noise %.3g %%, bias %.3g %%; unfiltered %.3g %%\n",
+                "error", 100 * error->rel_rmse, reference_ ? "against the reference" : "estimated from the halves",
+                100 * std::sqrt(filter_error_->variance), 100 * std::sqrt(filter_error_->squared_bias()),
+                100 * std::sqrt(filter_error_->unfiltered));
+        else if (job_.filter.passes > 0)
+            std::printf("filter         none: it needs four samples a pixel or more\n");
+        else if (error && shows_light)
             std::printf("%-15s%.3g %% (root of the relative mean squared error, %s)\n", reference_ ? "error" : "noise",
                         100 * error->rel_rmse, reference_ ? "against the reference" : "estimated; a bias does not show in it");
         if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());
@@ -222,10 +257,13 @@ class HeadlessRender {
     const RenderJob& job_;
     const RunOptions& options_;
     Renderer& renderer_;
+    Denoiser* denoiser_;  // null without a filter
     const SceneBackend& scene_backend_;
     std::optional<Reference> reference_;
-    FilmImage snapshot_;  // read back last
-    FilmHeader header_;   // of that snapshot
+    FilmImage snapshot_;                      // read back last
+    std::optional<FilmImage> filtered_ = {};  // of that snapshot, and its error
+    std::optional<FilterError> filter_error_ = {};
+    FilmHeader header_;  // of that snapshot
     std::vector<ReportRow> rows_;
     Clock::time_point start_ = Clock::now();  // of rendering
     Clock::time_point last_save_;             // when it ended

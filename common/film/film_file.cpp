@@ -29,7 +29,8 @@ constexpr std::pair<const char*, std::string FilmHeader::*> texts[] = {
     {"chapter", &FilmHeader::chapter},       {"scene", &FilmHeader::scene},
     {"scene_hash", &FilmHeader::scene_hash}, {"estimator_hash", &FilmHeader::estimator_hash},
     {"settings", &FilmHeader::settings},     {"shows", &FilmHeader::shows},
-    {"backend", &FilmHeader::backend},       {"device", &FilmHeader::device}};
+    {"backend", &FilmHeader::backend},       {"device", &FilmHeader::device},
+    {"filter", &FilmHeader::filter}};
 
 std::string to_text(double value) {
     char buffer[32];
@@ -61,7 +62,8 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
     exr.attributes = {{"seed", std::to_string(header.seed)}, {"first_sample", std::to_string(header.first_sample)},
                       {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(invalid)},
                       {"rays", std::to_string(header.rays)}, {"seconds", to_text(header.seconds)}};
-    for (const auto& [name, text] : texts) exr.attributes[name] = header.*text;
+    for (const auto& [name, text] : texts)
+        if (text != &FilmHeader::filter || !header.filter.empty()) exr.attributes[name] = header.*text;
     const auto add_channel = [&](const char* name, const auto& value_of) {
         std::vector<float>& channel = exr.channels[name];
         channel.resize(image.pixels.size());
@@ -85,6 +87,9 @@ FilmFile read_film(const std::filesystem::path& file) {
     if (!exr.is_complete) throw UserError(file.string() + ": lacks pixels of its display window: render again");
     FilmFile film;
     for (const auto& [name, text] : texts) film.header.*text = exr.attributes[name];
+    if (!film.header.filter.empty())
+        throw UserError(file.string() + ": is filtered (" + film.header.filter +
+                        "), so it cannot be continued or merged: render " + "without --filter");
     film.header.seed = number<uint32_t>(exr, "seed", file);
     film.header.first_sample = number<uint32_t>(exr, "first_sample", file);
     film.header.rays = number<uint64_t>(exr, "rays", file);

@@ -18,6 +18,7 @@ struct FilmHeader {
     std::string shows;           // what the picture shows instead of radiance; empty if it shows radiance
     std::string backend;
     std::string device;
+    std::string filter = {};  // that has run over the picture; empty without one
     uint32_t seed = 0;
     uint32_t first_sample = 0;
     uint64_t rays = 0;

@@ -36,11 +36,16 @@ void set_sum(FilmPixel& pixel, const glm::dvec3& sum) {
     }
 }
 
-glm::dvec3 difference_of_halves(const FilmPixel& pixel) {
-    if (pixel.sample_count < 2) return glm::dvec3(0);
+std::array<glm::dvec3, 2> means_of_halves(const FilmPixel& pixel) {
+    if (pixel.sample_count < 2) return {};
     const glm::dvec2 sizes = sizes_of_halves(pixel);
     const glm::dvec3 sum = sum_of(pixel), difference(pixel.difference);
-    return 0.5 * ((sum + difference) / sizes[0] - (sum - difference) / sizes[1]);
+    return {0.5 * (sum + difference) / sizes[0], 0.5 * (sum - difference) / sizes[1]};
+}
+
+glm::dvec3 difference_of_halves(const FilmPixel& pixel) {
+    const auto [first, second] = means_of_halves(pixel);
+    return first - second;
 }
 
 glm::dvec3 variance_of_mean(const FilmPixel& pixel) {

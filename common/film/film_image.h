@@ -19,7 +19,9 @@ void set_sum(FilmPixel& pixel, const glm::dvec3& sum);
 // Rounds. In loops over floats and doubles GCC 12 optimises a cast away.
 float to_float(double number);
 
-// The mean of the first, third, … sample minus that of the others: two independent estimates. 0 with fewer than two samples.
+// The means of the first, third, … sample and of the others: two independent estimates. 0 with fewer than two samples.
+std::array<glm::dvec3, 2> means_of_halves(const FilmPixel& pixel);
+// The first of them minus the second.
 glm::dvec3 difference_of_halves(const FilmPixel& pixel);
 // The variance of the mean of all samples, estimated from that difference.
 glm::dvec3 variance_of_mean(const FilmPixel& pixel);

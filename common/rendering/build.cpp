@@ -41,7 +41,10 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     build.job = std::move(job);
     const RenderJob& wanted = build.job;
     // Fail before loading the scene takes time and memory.
-    require_memory(device, Renderer::memory_needs(wanted.parameters.image_size, wanted.parameters.splat_unit));
+    std::vector<MemoryNeed> needs = Renderer::memory_needs(wanted.parameters.image_size, wanted.parameters.splat_unit);
+    if (wanted.filter.passes > 0)
+        for (MemoryNeed& need : Denoiser::memory_needs(wanted.parameters.image_size)) needs.push_back(std::move(need));
+    require_memory(device, needs);
     if (first <= BuildStage::gpu_scene) {
         build.gpu_scene =
             std::make_shared<GpuScene>(device, *wanted.scene, strategy_of(chapter, wanted.options), chapter.handles);
@@ -54,6 +57,9 @@ Build make_build(const Device& device, const Chapter& chapter, RenderJob job, Bu
     }
     record_device(build.job, device.description().name, to_string(build.backend));
     build.renderer = std::make_unique<Renderer>(device, *build.scene_backend, wanted.estimator, wanted.parameters);
+    if (wanted.filter.passes > 0)
+        build.denoiser =
+            std::make_unique<Denoiser>(device, *build.scene_backend, wanted.estimator, wanted.filter, wanted.parameters);
     if (wanted.resumed) build.renderer->resume(wanted.resumed->image);
     return build;
 }

@@ -1,5 +1,6 @@
 // From options to a render: the same headless, in the window, and for a comparison beside it.
 #pragma once
+#include "rendering/denoiser.h"
 #include "rendering/render_job.h"
 
 namespace lab {
@@ -11,6 +12,7 @@ struct Build {
     Backend backend = nullptr;
     std::shared_ptr<const SceneBackend> scene_backend;
     std::unique_ptr<Renderer> renderer;
+    std::unique_ptr<Denoiser> denoiser;  // null without --filter
 };
 
 // What changed options ask for: to load and build from this stage on, only to begin with new samples, or nothing.

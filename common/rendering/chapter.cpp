@@ -57,7 +57,7 @@ std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::st
     std::vector<ChapterChoice> choices;
     if (!chapter.has("choices")) return choices;
     for (const nlohmann::json& content : chapter.array("choices")) {
-        const JsonObject choice(content, file, "a choice", {"name", "help", "values", "shows", "chooses_material"});
+        const JsonObject choice(content, file, "a choice", {"name", "help", "values", "shows", "chooses_material", "passes"});
         choices.push_back({choice.required("name", choice.text("name")),
                            choice.required("help", choice.text("help")),
                            {},
@@ -70,6 +70,13 @@ std::vector<ChapterChoice> read_choices(const JsonObject& chapter, const std::st
             choices.back().values.emplace_back(value[0], value[1]);
         }
         if (choices.back().values.empty()) choice.fail("values", "is empty: the first value is the default");
+        if (!choice.has("passes")) continue;
+        for (const nlohmann::json& count : choice.array("passes")) {
+            if (!count.is_number_unsigned() || count > 100) choice.fail("passes", "has " + count.dump() + ": use 0 to 100");
+            choices.back().passes.push_back(count);
+        }
+        if (choices.back().passes.size() != choices.back().values.size())
+            choice.fail("passes", "must have one number for each value");
     }
     return choices;
 }

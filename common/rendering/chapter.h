@@ -27,6 +27,9 @@ struct ChapterChoice {
     std::vector<std::pair<std::string, std::string>> values;  // on the command line and in the shader, the default first
     std::string shows = {};         // what the picture shows instead of radiance, unless it has the default; empty if radiance
     bool chooses_material = false;  // the values after the default are the scene's materials, in its order
+    std::vector<uint32_t> passes = {};  // of filter.glsl for each value, if this chooses a filter of the finished picture
+
+    bool is_filter() const { return !passes.empty(); }
 
     std::string define() const;
 };

@@ -77,6 +77,11 @@ json to_json(const ReportRow& row) {
     set("rel_rmse", &ErrorMetrics::rel_rmse);
     set("mse_uncorrected", &ErrorMetrics::mse_uncorrected);
     set("rel_mse_uncorrected", &ErrorMetrics::rel_mse_uncorrected);
+    if (row.filter_error) {
+        result["variance"] = row.filter_error->variance;
+        result["squared_bias"] = row.filter_error->squared_bias();
+        result["rel_mse_unfiltered"] = row.filter_error->unfiltered;
+    }
     result["mean"] = row.mean;
     result["difference"] = row.difference;
     return result;

@@ -31,6 +31,7 @@ struct ReportRow {
     std::array<double, 3> mean{};        // radiance of the image
     std::array<double, 3> difference{};  // mean of one half of the samples minus that of the other
     std::optional<ErrorMetrics> error;
+    std::optional<FilterError> filter_error = {};  // of a filtered picture
 };
 
 // Errors are measured against a reference, or estimated from the halves of the samples.

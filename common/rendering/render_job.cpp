@@ -5,7 +5,6 @@
 
 #include "error.h"
 #include "files/file.h"
-#include "rendering/settings.h"
 #include "scene/media.h"
 
 namespace lab {
@@ -73,6 +72,10 @@ void set_options(RenderJob& job, const Chapter& chapter, const Options& options)
     job.options = options;
     job.parameters = make_parameters(chapter, *job.scene, options);
     job.samples = options.appearance.sample_count.value_or(job.scene->defaults.samples);
+    job.filter = filter_of(chapter, options);
+    if (job.filter.passes > 0 && options.run.target_error)
+        throw UserError(
+            "--target-error does not go with --filter, whose bias more samples may not reduce: leave one of them out");
     job.header.settings = settings_text(chapter, job.parameters, *job.scene, options);
     job.header.shows = shown_instead(chapter, *job.scene, options);
     job.header.seed = options.samples.seed;

@@ -5,6 +5,7 @@
 #include "film/film_file.h"
 #include "rendering/options.h"
 #include "rendering/renderer.h"
+#include "rendering/settings.h"
 
 namespace lab {
 
@@ -16,7 +17,8 @@ struct RenderJob {
     uint32_t samples = 0;  // target per pixel
     FilmHeader header = {};
     std::optional<FilmFile> resumed = {};  // the run that this one continues
-    bool may_be_refused = false;           // for "auto": the caller is prepared for a backend that refuses the shader
+    FilterChoice filter = {};
+    bool may_be_refused = false;  // for "auto": the caller is prepared for a backend that refuses the shader
 };
 
 // The sample count at which a render next computes its error: more by the factor `growth`, but by at least an eighth, at most a

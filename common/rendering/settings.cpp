@@ -93,6 +93,14 @@ size_t value_of(const ChapterChoice& choice, const Options& options) {
     return given == options.estimator.choices.end() ? 0 : given->second;
 }
 
+FilterChoice filter_of(const Chapter& chapter, const Options& options) {
+    if (options.image.view) return {};
+    for (const ChapterChoice& choice : chapter.choices)
+        if (const size_t value = value_of(choice, options); choice.is_filter() && value > 0)
+            return {choice.values[value].first, choice.define() + ' ' + choice.values[value].second, choice.passes[value]};
+    return {};
+}
+
 std::string shown_instead(const Chapter& chapter, const Scene& scene, const Options& options) {
     if (options.image.view) return "the view " + options.image.view->name;
     for (const ChapterChoice& choice : chapter.choices) {
@@ -177,18 +185,16 @@ Estimator make_estimator(const Chapter& chapter, const Options& options) {
     estimator.replacements = options.estimator.shaders;
     if (const auto& pixel = options.run.debug_pixel)
         estimator.defines.push_back("ONLY_PIXEL uvec2(" + std::to_string(pixel->x) + "u, " + std::to_string(pixel->y) + "u)");
-    if (const auto& view = options.image.view) {
-        if (view->observer.empty()) {
-            estimator.defines.push_back(view->define);
-            return {shared / "observation/view.glsl", estimator.defines};
-        }
+    if (const auto& view = options.image.view) {  // along the chapter's camera rays
         estimator.observed = estimator.file;
-        estimator.file = shared / view->observer;
+        estimator.file = shared / (view->observer.empty() ? "observation/view.glsl" : view->observer);
+        if (view->observer.empty()) estimator.defines.push_back(view->define);
+        if (asks_for_lens(options)) estimator.defines.emplace_back("FEATURE_LENS");
         return estimator;
     }
     if (strategy_of(chapter, options) == Strategy::light) estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     for (const ChapterChoice& choice : chapter.choices)
-        if (const size_t value = value_of(choice, options); value > 0)
+        if (const size_t value = value_of(choice, options); value > 0 && !choice.is_filter())
             estimator.defines.push_back(choice.define() + ' ' + choice.values[value].second);
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
     if (asks_for_lens(options)) estimator.defines.emplace_back("FEATURE_LENS");

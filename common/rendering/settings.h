@@ -34,6 +34,14 @@ Estimator estimator_of(const Chapter& chapter);
 // The index of the value that these options give one of the chapter's choices.
 size_t value_of(const ChapterChoice& choice, const Options& options);
 
+// The filter that runs over the picture under these options.
+struct FilterChoice {
+    std::string name = {};    // "nl_means"
+    std::string define = {};  // of filter.glsl
+    uint32_t passes = 0;      // 0 without a filter
+};
+FilterChoice filter_of(const Chapter& chapter, const Options& options);
+
 // What the picture shows under these options instead of radiance; empty if it shows radiance.
 std::string shown_instead(const Chapter& chapter, const Scene& scene, const Options& options);
 

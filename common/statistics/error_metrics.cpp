@@ -85,6 +85,9 @@ Reference read_reference(const std::filesystem::path& file) {
     ExrFile exr = read_exr(file);
     if (!exr.is_complete) throw UserError(file.string() + ": lacks pixels of its display window: it cannot serve as a reference");
     Reference reference{std::move(exr.image), std::nullopt, std::move(exr.attributes)};
+    if (const auto filter = reference.attributes.find("filter"); filter != reference.attributes.end())
+        throw UserError(file.string() + ": is filtered (" + filter->second +
+                        "), and its bias would count as the error of other pictures: it cannot serve as a reference");
     if (!std::all_of(reference.mean.pixels.begin(), reference.mean.pixels.end(),
                      [](float value) { return std::isfinite(value); }))
         throw UserError(file.string() + ": has infinite pixels: it cannot serve as a reference");
@@ -116,6 +119,34 @@ std::optional<ErrorMetrics> estimate_error(const FilmImage& film) {
     return metrics(
         block_means(std::move(mean)), [&](size_t i) { return variance_of_mean(film.pixels[i]); },
         [](size_t) { return glm::dvec3(0); });
+}
+
+FilterError measure_filter_error(const FilmImage& filtered, const FilmImage& raw, const Reference& reference) {
+    const auto noise = [&](size_t i) { return variance_of_mean(filtered.pixels[i]); };
+    return {.error = compare(filtered.mean(), reference),
+            .variance = metrics(reference.mean, noise, [](size_t) { return glm::dvec3(0); }).rel_mse,
+            .unfiltered = compare(raw.mean(), reference).rel_mse};
+}
+
+FilterError estimate_filter_error(const FilmImage& filtered, const FilmImage& raw) {
+    const Image scale = block_means(filtered.mean());
+    const auto exactly = [](size_t) { return glm::dvec3(0); };
+    const auto squared_difference = [&](size_t i) {
+        const auto own = means_of_halves(filtered.pixels[i]), judges = means_of_halves(raw.pixels[i]);
+        const glm::dvec3 first = own[0] - judges[1], second = own[1] - judges[0];
+        return 0.5 * (first * first + second * second);
+    };
+    // The judges' own variance, and by how much one filtered half is noisier than the mean of both.
+    const auto excess = [&](size_t i) {
+        const glm::dvec3 noise = difference_of_halves(raw.pixels[i]), filtered_noise = difference_of_halves(filtered.pixels[i]);
+        return 0.5 * noise * noise + 0.25 * filtered_noise * filtered_noise;
+    };
+    const auto noise_of = [&](const FilmImage& film) {
+        return metrics(
+                   scale, [&](size_t i) { return variance_of_mean(film.pixels[i]); }, exactly)
+            .rel_mse;
+    };
+    return {.error = metrics(scale, squared_difference, excess), .variance = noise_of(filtered), .unfiltered = noise_of(raw)};
 }
 
 NoiseEstimate estimate_noise(const FilmImage& film, glm::uvec2 corner, glm::uvec2 size) {

@@ -44,6 +44,19 @@ ErrorMetrics compare(const Image& image, const Reference& reference);
 // agree by chance.
 std::optional<ErrorMetrics> estimate_error(const FilmImage& film);
 
+// The error of a filtered film, of which a part is variance, and the rest the square of a bias; and that of the film before it
+// was filtered. The last two are relative mean squared errors, too.
+struct FilterError {
+    ErrorMetrics error;
+    double variance = 0;
+    double unfiltered = 0;
+    double squared_bias() const { return error.rel_mse > variance ? error.rel_mse - variance : 0; }
+};
+FilterError measure_filter_error(const FilmImage& filtered, const FilmImage& raw, const Reference& reference);
+// Without a reference: a filtered half F_A does not know the other half B, which is right on average, so the mean of (F_A - B)²
+// is the squared error of F_A plus the variance of B, which is half the mean of (A - B)².
+FilterError estimate_filter_error(const FilmImage& filtered, const FilmImage& raw);
+
 // The noise of a rectangle of pixels.
 struct NoiseEstimate {
     glm::dvec3 mean{0};

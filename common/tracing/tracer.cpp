@@ -95,6 +95,8 @@ std::set<std::filesystem::path> shader_files(const Estimator& estimator) {
                                                "engine/trace_ray/closest_hit.rchit", "engine/trace_ray/miss.rmiss"},
                                               estimator))
         files.insert(file);
+    if (named_includes(estimator).contains("filter.glsl"))
+        for (const auto& [place, file] : files_of({"engine/filter.comp"}, estimator)) files.insert(file);
     return files;
 }
 

@@ -129,6 +129,10 @@ void Session::begin(uint32_t reduction) {
     reduction_ = reduction;
     parameters.image_size = glm::max(parameters.image_size / reduction_, uvec2(1));
     build_->renderer->restart(parameters);
+    if (build_->denoiser) {
+        build_->denoiser->restart(parameters);
+        build_->filtered->resize(parameters.image_size.x, parameters.image_size.y);
+    }
     seconds_ = 0;
     snapshot_ = {};
     verdict_ = find_verdict();
@@ -196,12 +200,34 @@ void Session::render(double seconds) {
         renderer.set_dispatch_seconds(std::max(seconds - elapsed, 0.1 * seconds));
         const bool is_complete = !renderer.advance(next);
         elapsed = seconds_since(start);
+        if (is_complete && build_->denoiser) show_filtered(next);
         if (is_complete && reduction_ == 1) take_snapshots(next, seconds_ + elapsed);
     }
     seconds_ += elapsed;
     const double pixels = static_cast<double>(renderer.film().width()) * renderer.film().height();
     if (elapsed > 0 && renderer.samples() > first_samples)
         paths_per_second_ = (renderer.samples() - first_samples) * pixels / elapsed;
+}
+
+// Filtering takes time: the picture is filtered anew whenever its samples have doubled.
+void Session::show_filtered(uint32_t samples) {
+    if (!std::has_single_bit(samples) && samples != target_samples()) return;
+    FilmHeader ignored;
+    build_->filtered->write(read_picture(ignored));
+}
+
+// The picture as it is now, filtered if there is a filter and there are enough samples for it.
+FilmImage Session::read_picture(FilmHeader& header) {
+    FilmImage film = build_->renderer->film().read();
+    if (!build_->denoiser) return film;
+    if (build_->denoiser->can_filter(film)) {
+        header.filter = build_->job.filter.name;
+        FilmImage filtered = build_->denoiser->filter(film);
+        build_->denoiser->keep(film);
+        return filtered;
+    }
+    build_->denoiser->keep(film);
+    return film;
 }
 
 void Session::take_snapshots(uint32_t samples, double seconds) {
@@ -215,7 +241,10 @@ void Session::take_snapshots(uint32_t samples, double seconds) {
     FilmImage film = build_->renderer->film().read();
     if (is_for_verdict) live_verdict->add(film);
     if (!is_for_error) return;
-    if (const auto error = estimate_error(film)) snapshot_.relative_error = error->rel_rmse;
+    if (build_->denoiser && build_->denoiser->can_filter(film))  // show_filtered() has filtered it
+        snapshot_.relative_error = estimate_filter_error(build_->filtered->read(), film).error.rel_rmse;
+    else if (const auto error = estimate_error(film))
+        snapshot_.relative_error = error->rel_rmse;
     snapshot_.film = std::move(film);
     snapshot_.header = header(seconds);
 }
@@ -228,6 +257,7 @@ double Session::samples() const { return reduction_ == 1 ? build_->renderer->sam
 
 std::optional<double> Session::relative_error() const {
     if (!snapshot_.relative_error || samples() <= 0) return std::nullopt;
+    if (build_->denoiser) return snapshot_.relative_error;  // the picture that is shown
     return *snapshot_.relative_error * std::sqrt(snapshot_.film.min_samples() / samples());
 }
 
@@ -237,9 +267,10 @@ void Session::save(const std::vector<std::filesystem::path>& files) {
         while (build_->renderer->advance(1) && !is_interrupted()) {
         }
     }
-    const FilmImage film = build_->renderer->film().read();
+    FilmHeader made = header(seconds_);
+    const FilmImage film = read_picture(made);
     if (!film.exceeds(0)) throw UserError("stopped before the first sample: nothing was written");
-    write(files, film, header(seconds_));
+    write(files, film, made);
 }
 
 void Session::write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmHeader& header) const {
@@ -271,7 +302,9 @@ std::unique_ptr<WindowBuild> make_window_build(const Device& device, const Chapt
     std::shared_ptr<StorageImage> picture = before ? before->display->shared_picture() : nullptr;
     if (!picture || picture->width() != size.x || picture->height() != size.y)
         picture = std::make_shared<StorageImage>(device, size.x, size.y);
-    build->display = std::make_unique<DisplayPass>(device, build->renderer->film(), std::move(picture));
+    if (build->denoiser) build->filtered = std::make_unique<Film>(device, size.x, size.y);
+    build->display =
+        std::make_unique<DisplayPass>(device, build->filtered ? *build->filtered : build->renderer->film(), std::move(picture));
     return build;
 }
 

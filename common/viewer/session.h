@@ -15,7 +15,8 @@ namespace lab {
 // A build and its display pass, made in the background because it takes long.
 struct WindowBuild : Build {
     ShaderFiles shader_files;
-    uint64_t shader_hash = 0;  // of their contents
+    uint64_t shader_hash = 0;        // of their contents
+    std::unique_ptr<Film> filtered;  // what is shown if there is a filter
     std::unique_ptr<DisplayPass> display;
 };
 
@@ -95,6 +96,8 @@ class Session {
     void begin(uint32_t reduction);
     void render(double seconds);
     void take_snapshots(uint32_t samples, double seconds);
+    void show_filtered(uint32_t samples);
+    FilmImage read_picture(FilmHeader& header);
     std::variant<LiveVerdict, std::string> find_verdict() const;
     void write(const std::vector<std::filesystem::path>& files, const FilmImage& film, const FilmHeader& header) const;
     FilmHeader header(double seconds) const;  // after this many seconds of rendering

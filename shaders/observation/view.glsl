@@ -31,6 +31,16 @@ vec3 path_trace(Ray ray, inout uvec2 seed) {
 #endif
     if (!is_hit) return vec3(0.0);
     ShadingData s = get_shading_data(hit, ray.direction);
+#if defined(BEHIND_GLASS) && defined(FEATURE_DIELECTRICS)
+    // What smooth glass lets through, or else reflects: a path leaves it here after at most so many surfaces.
+    for (int i = 0; s.is_dielectric && i < 8; ++i) {
+        vec3 direction = refract(ray.direction, s.normal, 1.0 / s.relative_index);
+        if (direction == vec3(0.0)) direction = reflect(ray.direction, s.normal);
+        ray = get_ray_from_surface(s, direction);
+        if (!trace_ray(ray, NO_LIMIT, hit)) return vec3(0.0);
+        s = get_shading_data(hit, ray.direction);
+    }
+#endif
 #if defined(VIEW_NORMALS)
     return 0.5 + 0.5 * s.normal;
 #elif defined(VIEW_DEPTH)

@@ -1,6 +1,6 @@
 // Translates shaders for WebGL as a page does: node translate.js LIVE_FOLDER < JSON, with {sources, jobs: [{file, chapter, texts,
-// defines, isRecorder}]}. `texts` replaces or adds sources. A job of which the translation itself fails gets the message as its
-// text.
+// defines, isRecorder, main}]}. `texts` replaces or adds sources; `main` is the program, if it does not render. A job of which
+// the translation itself fails gets the message as its text.
 "use strict";
 const fs = require("fs");
 globalThis.live = {};
@@ -13,10 +13,10 @@ const texture = {
     width: 1,
     height: 1
 };
-for (const {file, chapter, texts, defines, isRecorder} of jobs) {
+for (const {file, chapter, texts, defines, isRecorder, main} of jobs) {
     let text;
     try {
-        const job = {sources: {...sources, ...texts}, chapter, defines, scene: {buffers: [], images: [texture]}};
+        const job = {sources: {...sources, ...texts}, chapter, defines, main, scene: {buffers: [], images: [texture]}};
         const translated = live.glsl.translate({...job, ...(isRecorder && live.glsl.recorderOf(job.sources, chapter))});
         const lines = translated.text.split("\n").map((line, i) => {
             const place = translated.place(i + 1);

@@ -13,7 +13,7 @@ from book import live
 from browser import CHROMIUM, Browser
 from course.mistakes import complete, plant, records, shader_of
 from includes import continued, shaders_of
-from project import CHAPTERS, course, read_json, text_of
+from project import CHAPTERS, course, description, read_json, text_of
 
 NODE, VALIDATOR = shutil.which("node"), shutil.which("glslangValidator")
 STACK = "BVH_STACK_SIZE 32"
@@ -47,6 +47,13 @@ FEATURES["everything"] = [
     "SPLATS",
     *sorted({name for text in live.shaders().values() for name in re.findall(r"\bFEATURE_\w+", text)}),
 ]
+FILTERS = {
+    name: [f"FILTER {value}"]
+    for chapter in course()
+    for choice in description(CHAPTERS[chapter]).get("choices", [])
+    if "passes" in choice
+    for name, value in choice["values"][1:]
+}
 NOTEBOOK = PROJECT / "notebook"
 # What a browser has against a fragment shader.
 COMPILE = """(text => {
@@ -90,8 +97,8 @@ def others():
 
 @unittest.skipUnless(NODE and VALIDATOR, "needs nodejs and glslang-tools, which ./lab test installs")
 class ShadersInBrowserTest(unittest.TestCase):
-    def translate(self, jobs, is_recorder=False):
-        """Writes files, as {file: (chapter, name, changed texts, feature)}."""
+    def translate(self, jobs, **program):
+        """Writes files, as {file: (chapter, name, changed texts, feature)}. `program`: isRecorder or main of translate.js."""
         task = {
             "sources": live.shaders(),
             "jobs": [
@@ -99,8 +106,8 @@ class ShadersInBrowserTest(unittest.TestCase):
                     "file": str(file),
                     "chapter": CHAPTERS[chapter],
                     "texts": changed,
-                    "defines": FEATURES[feature],
-                    "isRecorder": is_recorder,
+                    "defines": (FEATURES | FILTERS)[feature],
+                    **program,
                 }
                 for file, (chapter, _, changed, feature) in jobs.items()
             ],
@@ -109,7 +116,7 @@ class ShadersInBrowserTest(unittest.TestCase):
             [NODE, PROJECT / "tests/browser/translate.js", TOOLS / "book/live"], input=json.dumps(task), text=True, check=True
         )
 
-    def errors(self, texts, features=tuple(FEATURES), is_recorder=False):
+    def errors(self, texts, features=tuple(FEATURES), **program):
         """The errors of (chapter, name, changed texts), by name and features."""
         with tempfile.TemporaryDirectory() as folder:
             jobs = {
@@ -117,7 +124,7 @@ class ShadersInBrowserTest(unittest.TestCase):
                 for i, (chapter, name, changed) in enumerate(texts)
                 for feature in features
             }
-            self.translate(jobs, is_recorder)
+            self.translate(jobs, **program)
             output = subprocess.run([VALIDATOR, *jobs], capture_output=True, text=True).stdout
         self.assertGreater(len(jobs), 0)
         found, file = {}, None
@@ -144,7 +151,9 @@ class ShadersInBrowserTest(unittest.TestCase):
     def test_the_list_of_files_that_chapters_replace_is_complete(self):
         """Nobody else has a file with the name of one of the engine's, or of a chapter that this one continues."""
         replaceable = {Path(name).name for name in read_json(PROJECT / live.REPLACEABLE)}
-        engine = [{file.name for room in ("engine", "world") for file in (PROJECT / "shaders" / room).rglob("*.glsl")}]
+        files = [file for room in ("engine", "world") for file in (PROJECT / "shaders" / room).rglob("*.glsl")]
+        included = {name for file in files for name in re.findall(r'^#include "(\w+\.glsl)"', text_of(file), re.MULTILINE)}
+        engine = [{file.name for file in files}, included]
         replaced = set()
         for chapter in course():
             own, *others = (
@@ -167,7 +176,18 @@ class ShadersInBrowserTest(unittest.TestCase):
                     self.assertEqual(browser.evaluate(COMPILE % json.dumps(file.read_text(encoding="utf-8"))), "")
 
     def test_the_recorder_of_every_chapter_compiles(self):
-        self.assertEqual(self.errors(((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), is_recorder=True), {})
+        self.assertEqual(self.errors(((chapter, CHAPTERS[chapter], {}) for chapter in CHAPTERS), isRecorder=True), {})
+
+    def test_filters_compile(self):
+        shaders = live.shaders()
+        filters = {path: int(path.split("/")[1][:2]) for path in shaders if re.fullmatch(r"chapters/\w+/filter\.glsl", path)}
+        texts = [(chapter, path, {}) for path, chapter in filters.items()]
+        for chapter in filters.values():
+            piece = live.exercise_of(CHAPTERS[chapter], shaders)
+            text = piece and shaders[piece["file"]].replace(piece["find"], piece["replace"])
+            texts += [(chapter, "exercise", {piece["file"]: text})] if piece else []
+        texts += [mistake for mistake in mistakes() if mistake[0] in filters.values()]
+        self.assertEqual(self.errors(texts, tuple(FILTERS), main="shaders/engine/filter.frag"), {})
 
     def test_solutions_and_exercises_compile(self):
         texts = [

@@ -205,7 +205,7 @@ class LivePagesTest(LivePages, unittest.TestCase):
                 )
                 self.assertLess(
                     size,
-                    600_000 if picture["name"].startswith("cornell_box") else 2_500_000,
+                    600_000 if picture["name"].startswith("cornell_box") else 2_600_000,
                     f"chapter {chapter}, {picture['name']}",
                 )
 

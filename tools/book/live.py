@@ -50,6 +50,7 @@ SCRIPTS = [
     "film.js",
     "splats.js",
     "renderer.js",
+    "denoiser.js",
     "editor.js",
     "plot.js",
     "camera.js",

@@ -254,8 +254,11 @@ def write_scene(scene, folder, name):
 
 # ---------------------------------------------------------------------------------------------- measuring
 def look(image, report, samples, channel=None):
-    """What a picture shows of a shader. If a few bright pixels dominate the variance, its upper bound is used."""
+    """What a picture shows of a shader. If a few bright pixels dominate the variance, its upper bound is used. Pixels that a filter has
+    made infinite, or not a number, count as invalid samples do."""
     pixels = (image.mean(axis=2) if channel is None else image[..., channel]).ravel()
+    invalid = int((~np.isfinite(pixels)).sum())
+    pixels = np.where(np.isfinite(pixels), pixels, 0.0)
     variance = float(pixels.var(ddof=1))
     spread = float(np.std([block.var(ddof=1) for block in np.array_split(pixels, BLOCKS)], ddof=1) / math.sqrt(BLOCKS))
     return Sight(
@@ -264,7 +267,7 @@ def look(image, report, samples, channel=None):
         variance * samples,
         spread * samples,
         report["rows"][-1]["rays"] / samples / pixels.size,
-        report["invalid_samples"],
+        report["invalid_samples"] + invalid,
     )
 
 

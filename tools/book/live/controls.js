@@ -22,6 +22,8 @@ live.Controls = (() => {
         return `${scene.replaceAll("_", " ")}, up to ${bounces} bounce${bounces === "1" ? "" : "s"}`;
     };
 
+    const defineOf = ({define, values, chosen}) => `${define} ${values[chosen.selectedIndex][1]}`;
+
     return class Controls {
         constructor(frame) {
             const {about: {pictures, strategies, choices, exercise, bugs}, editor} = frame, restart = () => frame.restart();
@@ -83,11 +85,19 @@ live.Controls = (() => {
         // Whether surfaces are shown instead of radiance.
         get isView() { return /^[A-Z]/.test(this.view.value); }
 
-        // The defines of the page's own options: those of choices that are not the first, which the shader knows.
+        // The defines of the page's own options: those of choices that are not the first, which the shader knows. A filter comes
+        // after it.
         get options() {
             const strategy = this.strategy.value ? [`STRATEGY STRATEGY_${this.strategy.value.toUpperCase()}`] : [];
-            const made = this.choices.filter(({chosen}) => chosen.selectedIndex > 0);
-            return [...strategy, ...made.map(({define, values, chosen}) => `${define} ${values[chosen.selectedIndex][1]}`)];
+            const made = this.choices.filter(({chosen, passes}) => chosen.selectedIndex > 0 && !passes);
+            return [...strategy, ...made.map(defineOf)];
+        }
+
+        // The filter of the picture, with the number of its passes, or nothing.
+        get filter() {
+            const choice = this.choices.find(({chosen, passes}) => chosen.selectedIndex > 0 && passes);
+            return choice && !this.isView ? {define: defineOf(choice), passes: choice.passes[choice.chosen.selectedIndex]} :
+                                            undefined;
         }
 
         // What the picture shows instead of radiance, or nothing.

@@ -10,7 +10,18 @@ live.Picture = (() => {
         camera: "the camera has changed",
         background: "the background is not the scene's"
     };
+    const SHOWS_SURFACES = {
+        "path_trace.glsl": "shaders/observation/view.glsl",
+        "sample_loop.glsl": "shaders/engine/sample_loop.glsl"
+    };
     const TURNS = 65536;  // that the loops of a sample may take if paths are short, as in shaders/engine/limited_loops.glsl
+
+    function stopAll(states) {
+        for (const {rendering, denoiser} of states) {
+            rendering.stop();
+            denoiser?.stop();
+        }
+    }
 
     return class Picture {
         static MOST_SAMPLES = 4096;
@@ -94,7 +105,7 @@ live.Picture = (() => {
 
         stop() {
             ++this.turn;
-            for (const {rendering} of this.renderings) rendering.stop();
+            stopAll(this.renderings);
             this.renderings = [];
         }
 
@@ -147,22 +158,22 @@ live.Picture = (() => {
             const {isView, view, length, background} = this.frame.controls;
             if (length.value !== "")
                 parameters[placeOf("max_path_length")] = Math.min(Math.max(Math.round(length.value), 0), 100);
-            const defines = [...scene.defines, ...options], named = {}, views = isView ? [`VIEW_${view.value}`] : [];
+            const defines = [...scene.defines, ...options], views = isView ? [`VIEW_${view.value}`] : [];
             if (background) parameters.set(new Uint32Array(Float32Array.from(background).buffer), placeOf("background"));
             if (background?.some(radiance => radiance > 0)) defines.push("FEATURE_SKY");
-            if (isView) {
-                named["path_trace.glsl"] = "shaders/observation/view.glsl";
-                named["sample_loop.glsl"] = "shaders/engine/sample_loop.glsl";
-            }
-            const hasLightPaths = this.hasLightPaths(parameters, defines, views);
-            if (hasLightPaths) defines.push("SPLATS");
+            if (this.hasLightPaths(parameters, defines, views)) defines.push("SPLATS");
+            const state = {chapter, sources, scene, defines, parameters}, compiled = await this.compile(state, views);
+            if (this.camera?.hasMoved) parameters.set(this.camera.words);
+            return {...state, ...compiled, rendering: new Rendering(this.renderer, {...compiled, scene, parameters, size})};
+        }
+
+        // Compiles the chapter's program, or with `views`, their defines, what shows surfaces instead.
+        async compile({chapter, sources, scene, defines}, views) {
+            const named = views.length ? SHOWS_SURFACES : {}, hasLightPaths = defines.includes("SPLATS");
             const adder = hasLightPaths ? await this.renderer.compile(live.Splats.adder(live.sources, chapter)) : undefined;
             const translated = live.glsl.translate({sources, chapter, named, defines: [...defines, ...views], scene});
             const started = performance.now(), linked = await this.renderer.compile(translated);
-            const compileTime = performance.now() - started;
-            if (this.camera?.hasMoved) parameters.set(this.camera.words);
-            const rendering = new Rendering(this.renderer, {translated, linked, adder, scene, parameters, size});
-            return {rendering, translated, chapter, sources, scene, defines, parameters, compileTime};
+            return {translated, linked, adder, compileTime: performance.now() - started};
         }
 
         // Whether light paths find a part of the light. Where the device cannot add it up, camera paths find all.
@@ -191,8 +202,14 @@ live.Picture = (() => {
             const reference = picture.unpacked ??= picture.reference ? await loadReference(this.folder, picture.reference) : null;
             const state = await this.prepare(picture, editor.sources), {rendering} = state, states = [state];
             if (turn === this.turn && controls.compared.checked && before) states.push(await this.prepare(before, live.sources));
+            try {
+                if (controls.filter) state.denoiser = await live.Denoiser.make(this, state, controls.filter);
+            } catch (error) {
+                stopAll(states);
+                throw error;
+            }
             if (turn !== this.turn) {
-                for (const {rendering} of states) rendering.stop();
+                stopAll(states);
                 return false;
             }
             this.renderings = states;
@@ -218,10 +235,12 @@ live.Picture = (() => {
                     this.checkLoops(film, state);
                     this.times ??= {compile: state.compileTime, first: performance.now() - this.started};
                 },
-                look: film => {
+                look: async film => {
                     this.checkLoops(film, state);
                     if (!this.withoutVerdict && film.rays && film.samples === verdict.nextSamples) verdict.add(film);
-                    look(film, reference, verdict);
+                    const started = performance.now(), shown = state.denoiser ? await state.denoiser.filter(film) : film;
+                    if (state.denoiser) rendering.busy += performance.now() - started;
+                    if (shown) look(shown, reference, verdict);
                 }
             });
         }

@@ -2,7 +2,7 @@
 "use strict";
 
 live.rendering = (() => {
-    const WIDTH = 2048;           // texels of the arrays' textures, which every device allows
+    const ARRAY_WIDTH = 2048;     // texels of the arrays' textures, which every device allows
     const MOST_PROGRAMS = 16;     // that are kept
     const SHORT = 20, LONG = 80;  // milliseconds of a draw call: the page has to answer meanwhile
     // Turns that the loops of a sample may take at first, by how much this grows, and milliseconds of a draw that some systems do
@@ -119,7 +119,7 @@ void main() {
             gl.enable(gl.SCISSOR_TEST);
             let start = 0;
             for (const [picture, end] of parts) {
-                picture.films[picture.isFirstPass ? 1 : 0].bind(display);
+                (picture.filtered ?? picture.films[picture.isFirstPass ? 1 : 0]).bind(display);
                 gl.scissor(start, 0, end - start, size[1]);
                 gl.drawArrays(gl.TRIANGLES, 0, 3);
                 start = end;
@@ -135,13 +135,14 @@ void main() {
             this.splats = adder && new live.Splats(renderer, size, adder);
             this.rendersMany = hasSampleLoop && !adder;  // samples in a draw: a fragment keeps one connection
             Object.assign(this, {busy: 0, isFirstPass: true, isStopped: false});  // `busy`: milliseconds of draws
-            const {words} = scene, height = Math.ceil(words.length / 4 / WIDTH);
-            const texels = new Uint32Array(4 * WIDTH * height);
+            this.filtered = null;  // the film that a Denoiser has made of this picture
+            const {words} = scene, height = Math.ceil(words.length / 4 / ARRAY_WIDTH);
+            const texels = new Uint32Array(4 * ARRAY_WIDTH * height);
             texels.set(words);
             // The tree is read by four words. Compilers for Direct3D take twice as long where a single word is picked out of
             // four.
-            this.arrays = renderer.image(gl.RGBA32UI, WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
-            this.words = renderer.image(gl.R32UI, WIDTH, 4 * height, gl.RED_INTEGER, gl.UNSIGNED_INT, texels);
+            this.arrays = renderer.image(gl.RGBA32UI, ARRAY_WIDTH, height, gl.RGBA_INTEGER, gl.UNSIGNED_INT, texels);
+            this.words = renderer.image(gl.R32UI, ARRAY_WIDTH, 4 * height, gl.RED_INTEGER, gl.UNSIGNED_INT, texels);
             const probe = scene.images.find(image => image.binding === layout.constants.BINDING_LIGHT_PROBE);
             if (probe) {
                 const floats = new Float32Array(words.buffer, 4 * probe.first, probe.count);
@@ -149,14 +150,10 @@ void main() {
             }
             // Two films take turns, since a shader cannot write what it reads.
             this.films = [0, 1].map(() => new live.Film(renderer, size, Boolean(adder)));
-            this.setParameters(parameters);
+            this.parameters = parameters.slice();
+            gl.useProgram(linked.program);
             for (const {binding, first, count} of scene.buffers)
                 gl.uniform2ui(linked.place(`web_places[${binding}]`), first, count);
-        }
-
-        setParameters(parameters) {
-            this.gl.useProgram(this.linked.program);
-            this.setStruct("RenderParameters", "parameters", parameters);
         }
 
         // Lets render() begin anew with other parameters. What it draws at first is shown before, so that a moving camera sees
@@ -208,6 +205,7 @@ void main() {
                 width,
                 height,
                 samples: this.samples,
+                words: [a, b, c],
                 sums: new Float64Array(3 * count),
                 differences: new Float64Array(3 * count),
                 rays: 0,
@@ -234,14 +232,15 @@ void main() {
         }
 
         // Renders until `target()` samples are reached or stop() is called. Calls `look(film)` at 1, 2, 4, … samples and the
-        // target, and before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before each draw. Returns
-        // whether it was not stopped. `pace`: how much fits into a draw, from the last picture if it was like this one.
+        // target, waits for it, and calls before `preview(film)`, where few pixels have a sample; `isPaused()` is asked before
+        // each draw. Returns whether it was not stopped. `pace`: how much fits into a draw, from the last picture if it was like
+        // this one.
         async render({target, isPaused = () => false, preview = () => {}, look, shown = () => {}}, pace = {rows: 8, step: 1}) {
             const {gl, size} = this;
             let {rows, step} = pace, isPreview = true, isChange = false;
             while (this.samples < target()) {
                 if (this.changed) {
-                    this.setParameters(this.changed);
+                    this.parameters = this.changed.slice();
                     this.changed = undefined;
                     this.clearFilms();
                     isPreview = isChange = true;
@@ -294,8 +293,10 @@ void main() {
                     isPreview = isChange = false;
                     preview(film);
                     rows = Math.max(1, rows >> 3);
-                } else if (film)
-                    look(film);
+                } else if (film) {
+                    await look(film);
+                    if (this.isStopped) return false;
+                }
             }
             return true;
         }
@@ -325,12 +326,13 @@ void main() {
         clearFilms() {
             for (const film of this.films) film.clear();
             this.splats?.clear();
-            Object.assign(this, {samples: 0, isFirstPass: true});
+            Object.assign(this, {samples: 0, isFirstPass: true, filtered: null});
         }
 
         draw(row, rows, target, isPreview) {
             const {gl, linked, linked: {place}, films, samples} = this;
             gl.useProgram(linked.program);
+            this.setStruct("RenderParameters", "parameters", this.parameters);  // since a program may draw other pictures, too
             films[0].bind(linked);
             this.renderer.bind(linked, "web_arrays", 3, this.arrays);
             this.renderer.bind(linked, "web_words", 4, this.words);
@@ -351,5 +353,5 @@ void main() {
         }
     }
 
-    return {Renderer, Rendering, pause};
+    return {Renderer, Rendering, ARRAY_WIDTH, pause};
 })();

@@ -1,0 +1,61 @@
+// The steps in which a picture is filtered after its render with a chapter's filter.glsl. All pixels finish a step before the next.
+// Before this file stand `FilterParameters filtering` and what reads the memory of a device:
+//   FilmPixel get_film_pixel(uint film, uint pixel_index) of a film, for example FILM_NOW
+//   vec3 get_mean_at(uint pixel_index, int half_index) and get_variance_at(…), as the last step has left them
+
+bool is_inside(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, ivec2(filtering.image_size))); }
+
+// The index of a pixel, or outside of the picture of the one next to it.
+uint get_pixel_index(ivec2 p) {
+    uvec2 inside = uvec2(clamp(p, ivec2(0), ivec2(filtering.image_size) - 1));
+    return inside.y * filtering.image_size.x + inside.x;
+}
+
+// Mean and variance of a half, 0 or 1, as the last pass has left them.
+vec3 get_mean(ivec2 p, int half_index) { return get_mean_at(get_pixel_index(p), half_index); }
+vec3 get_variance(ivec2 p, int half_index) { return get_variance_at(get_pixel_index(p), half_index); }
+
+vec3 get_mean_of(FilmPixel pixel) { return (pixel.sum + pixel.compensation) / float(max(pixel.sample_count, 1u)); }
+
+// What the camera rays of a pixel see, on average: the diffuse albedo, and the shading normal.
+vec3 get_albedo(ivec2 p) { return get_mean_of(get_film_pixel(FILM_ALBEDO, get_pixel_index(p))); }
+vec3 get_normal(ivec2 p) { return 2.0 * get_mean_of(get_film_pixel(FILM_NORMALS, get_pixel_index(p))) - 1.0; }
+
+// Samples that were infinite or not a number add 0: such a pixel is too dark, and must not darken others.
+bool is_valid(ivec2 p) { return get_film_pixel(FILM_NOW, get_pixel_index(p)).invalid_count == 0u; }
+
+// FilterPixel get_filter_input(uint pixel_index), FilmPixel get_picture(uint pixel_index, FilterPixel filtered)
+#include "filter_input.glsl"
+// FilterPixel filter_pixel(ivec2 p)
+#include "filter.glsl"
+
+// A pixel as the last step has left it.
+FilterPixel get_filter_pixel(ivec2 p) {
+    FilterPixel result;
+    for (int half_index = 0; half_index < 2; ++half_index) {
+        result.mean[half_index] = get_mean(p, half_index);
+        result.variance[half_index] = get_variance(p, half_index);
+    }
+    return result;
+}
+
+// The variance of a pixel comes from a single difference, and is as uncertain as that. Neighbours help.
+FilterPixel smooth_variance(ivec2 p) {
+    const int RADIUS_OF_VARIANCE = 2;
+    FilterPixel result = get_filter_pixel(p);
+    for (int half_index = 0; half_index < 2; ++half_index) {
+        vec3 sum = vec3(0.0);
+        for (int y = -RADIUS_OF_VARIANCE; y <= RADIUS_OF_VARIANCE; ++y)
+            for (int x = -RADIUS_OF_VARIANCE; x <= RADIUS_OF_VARIANCE; ++x) sum += get_variance(p + ivec2(x, y), half_index);
+        result.variance[half_index] = sum / float((2 * RADIUS_OF_VARIANCE + 1) * (2 * RADIUS_OF_VARIANCE + 1));
+    }
+    return result;
+}
+
+// What a step before the last makes of a pixel. The last one is make_picture().
+FilterPixel run_step(ivec2 p) {
+    if (filtering.step == FILTER_STEP_INPUT) return get_filter_input(get_pixel_index(p));
+    if (filtering.step == FILTER_STEP_SMOOTH) return smooth_variance(p);
+    return filter_pixel(p);
+}
+FilmPixel make_picture(ivec2 p) { return get_picture(get_pixel_index(p), get_filter_pixel(p)); }
