@@ -232,7 +232,9 @@ class HeadlessRender {
         if (is_spread) std::printf(" ± %.2g", std::sqrt(error->mse / static_cast<double>(snapshot_.pixels.size())));
         std::printf(" (red, green, blue%s)\n", is_spread ? "; standard error, on average" : "");
         std::printf("samples        %u a pixel, %s paths%s\n", snapshot_.min_samples(), short_number(paths()).c_str(),
-                    snapshot_.min_samples() < job_.samples ? " (stopped early; --resume continues)" : "");
+                    snapshot_.min_samples() >= job_.samples ? ""
+                    : filtered_                             ? " (stopped early)"
+                                                            : " (stopped early; --resume continues)");
         std::printf("time           %s, %s rays/s\n", duration_text(new_seconds).c_str(),
                     short_number(static_cast<double>(renderer_.rays()) / std::max(new_seconds, 1e-9)).c_str());
         std::printf("acceleration   structure of %s bytes, built in %s\n",

@@ -167,7 +167,7 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
     const Strategy strategy = strategy_of(chapter, options);
     if (!chapter.strategies.empty() && strategy != chapter.strategies.front()) text << " --strategy " << to_string(strategy);
     for (const ChapterChoice& choice : chapter.choices)
-        if (const size_t value = value_of(choice, options); value > 0)
+        if (const size_t value = value_of(choice, options); value > 0 && !choice.is_filter())
             text << ' ' << choice.name << ' ' << choice.values[value].first;
     if (options.image.view) text << " --view " << options.image.view->name;
     if (options.scene.specular) text << " --specular";
