@@ -3,6 +3,7 @@
 //   FilmPixel get_film_pixel(uint film, uint pixel_index) of a film, for example FILM_NOW
 //   vec3 get_mean_at(uint pixel_index, int half_index) and get_variance_at(…), as the last step has left them
 
+// Whether the picture has such a pixel.
 bool is_inside(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, ivec2(filtering.image_size))); }
 
 // The index of a pixel, or outside of the picture of the one next to it.
@@ -11,14 +12,17 @@ uint get_pixel_index(ivec2 p) {
     return inside.y * filtering.image_size.x + inside.x;
 }
 
-// Mean and variance of a half, 0 or 1, as the last pass has left them.
+// What a half of a pixel's samples, 0 or 1, shows: its mean, as the last pass has left it.
 vec3 get_mean(ivec2 p, int half_index) { return get_mean_at(get_pixel_index(p), half_index); }
+// The variance of that mean.
 vec3 get_variance(ivec2 p, int half_index) { return get_variance_at(get_pixel_index(p), half_index); }
 
+// What all samples of a pixel show.
 vec3 get_mean_of(FilmPixel pixel) { return (pixel.sum + pixel.compensation) / float(max(pixel.sample_count, 1u)); }
 
-// What the camera rays of a pixel see, on average: the diffuse albedo, and the shading normal.
+// The diffuse albedo that the camera rays of a pixel see, on average, also through smooth glass.
 vec3 get_albedo(ivec2 p) { return get_mean_of(get_film_pixel(FILM_ALBEDO, get_pixel_index(p))); }
+// The mean of the shading normals that they see, shorter than 1 where these differ.
 vec3 get_normal(ivec2 p) { return 2.0 * get_mean_of(get_film_pixel(FILM_NORMALS, get_pixel_index(p))) - 1.0; }
 
 // Samples that were infinite or not a number add 0: such a pixel is too dark, and must not darken others.

@@ -27,6 +27,7 @@ TOPICS = {  # heading: sources
     "Lights and the background": ["shaders/world/lights.glsl", "shaders/world/background.glsl", "shaders/world/light_probe.glsl"],
     "Media": ["shaders/world/boundaries.glsl"],
     "Light for other pixels": ["shaders/engine/splats.glsl"],
+    "Filters": ["shaders/engine/filter_steps.glsl"],
     "Options and constants": ["shaders/world/constants.glsl", INTERFACE],
 }
 NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|#include[^\n]*", re.DOTALL)
