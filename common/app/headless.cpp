@@ -91,7 +91,7 @@ class HeadlessRender {
         remove_interrupt_handler();
         if (!options_.quiet)
             print_summary();
-        else if (snapshot_.invalid_samples() > 0)  // never silent
+        else if (picture().invalid_samples() > 0)  // never silent
             std::fprintf(stderr, "note: %s\n", invalid_samples_text().c_str());
     }
 
@@ -216,7 +216,7 @@ class HeadlessRender {
     double paths() const { return static_cast<double>(snapshot_.sum(&FilmPixel::sample_count)); }
 
     std::string invalid_samples_text() const {
-        return std::to_string(snapshot_.invalid_samples()) + " of " + short_number(paths()) +
+        return std::to_string(picture().invalid_samples()) + " of " + short_number(paths()) +
                " samples infinite or not a number: they count as 0 and their pixels are magenta";
     }
 
@@ -251,7 +251,7 @@ class HeadlessRender {
         else if (error && shows_light)
             std::printf("%-15s%.3g %% (root of the relative mean squared error, %s)\n", reference_ ? "error" : "noise",
                         100 * error->rel_rmse, reference_ ? "against the reference" : "estimated; a bias does not show in it");
-        if (snapshot_.invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());
+        if (picture().invalid_samples() > 0) std::printf("invalid        %s\n", invalid_samples_text().c_str());
         for (const auto& file : options_.outputs) std::printf("picture        %s\n", file.string().c_str());
         if (!options_.report.empty()) std::printf("report         %s\n", options_.report.string().c_str());
     }

@@ -2,6 +2,7 @@
 // Filters a picture in a browser, see filter_steps.glsl: a draw is a step. A FilterPixel takes as many words as a pixel of a film, and
 // is stored like one.
 #include "interface.h"
+#include "film.glsl"
 #include "film_words.glsl"
 
 uniform FilterParameters filtering;

@@ -62,4 +62,11 @@ FilterPixel run_step(ivec2 p) {
     if (filtering.step == FILTER_STEP_SMOOTH) return smooth_variance(p);
     return filter_pixel(p);
 }
-FilmPixel make_picture(ivec2 p) { return get_picture(get_pixel_index(p), get_filter_pixel(p)); }
+FilmPixel make_picture(ivec2 p) {
+    FilmPixel pixel = get_picture(get_pixel_index(p), get_filter_pixel(p));
+    // A filter may divide by 0. What it makes then is counted and shown like samples that are no numbers.
+    for (int channel = 0; channel < 3; ++channel)
+        if (is_invalid(pixel.sum[channel]) || is_invalid(pixel.difference[channel]))
+            return FilmPixel(vec3(0.0), vec3(0.0), vec3(0.0), pixel.sample_count, pixel.sample_count);
+    return pixel;
+}

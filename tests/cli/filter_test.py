@@ -4,6 +4,7 @@ import json
 
 from image_files import Exr
 from program import BINARIES, MERGE, RenderTest
+from tools_path import PROJECT
 
 CHAPTER = BINARIES / "16_denoising"
 
@@ -36,6 +37,13 @@ class FilterTest(RenderTest):
         )
         self.assertIn("needs four samples", text)
         self.assertNotIn("filter", Exr(self.folder / "few.exr").attributes)
+
+    def test_pixels_that_a_filter_divides_by_0_are_counted(self):
+        text = (PROJECT / "chapters/16_denoising/filter.glsl").read_text(encoding="utf-8")
+        file = self.write("filter.glsl", text.replace("= sum / weights;", "= sum * (1.0 / (weights * 0.0));"))
+        options = self.command("--samples=8", "--filter=bilateral", f"--shader=filter.glsl={file}")
+        out = self.render(*options, "--output", self.folder / "infinite.exr", program=CHAPTER)
+        self.assertRegex(out, r"invalid +\d+ of \S+( \w)? samples infinite or not a number")
 
     def test_a_bias_has_no_target(self):
         self.refused("leave one of them out", "--filter=nl_means", "--target-error=0.1")
