@@ -109,9 +109,12 @@ class HeadlessRender {
                 save_if_due();
             }
             done = next;
-            add_row(done);
+            if (!options_.report.empty() || options_.target_error || done == job_.samples)
+                add_row(done);
+            else if (denoiser_)
+                take_snapshot();
             if (is_accurate()) return;
-            if (denoiser_ && done < job_.samples) denoiser_->keep(renderer_.film().read());
+            if (denoiser_) denoiser_->keep(snapshot_);
         }
     }
 
@@ -177,7 +180,6 @@ class HeadlessRender {
     const FilmImage& picture() const { return filtered_ ? *filtered_ : snapshot_; }
 
     void add_row(uint32_t samples) {
-        if (options_.report.empty() && !options_.target_error && samples < job_.samples) return;
         const auto start = Clock::now();
         const double cpu_start = processor_seconds();
         take_snapshot();

@@ -63,7 +63,7 @@ void write_film(const std::filesystem::path& file, const FilmImage& image, const
                       {"samples", std::to_string(samples)},  {"invalid_samples", std::to_string(invalid)},
                       {"rays", std::to_string(header.rays)}, {"seconds", to_text(header.seconds)}};
     for (const auto& [name, text] : texts)
-        if (text != &FilmHeader::filter || !header.filter.empty()) exr.attributes[name] = header.*text;
+        if (!(header.*text).empty()) exr.attributes[name] = header.*text;
     const auto add_channel = [&](const char* name, const auto& value_of) {
         std::vector<float>& channel = exr.channels[name];
         channel.resize(image.pixels.size());
@@ -89,7 +89,7 @@ FilmFile read_film(const std::filesystem::path& file) {
     for (const auto& [name, text] : texts) film.header.*text = exr.attributes[name];
     if (!film.header.filter.empty())
         throw UserError(file.string() + ": is filtered (" + film.header.filter +
-                        "), so it cannot be continued or merged: render " + "without --filter");
+                        "), so it cannot be continued or merged: render without --filter");
     film.header.seed = number<uint32_t>(exr, "seed", file);
     film.header.first_sample = number<uint32_t>(exr, "first_sample", file);
     film.header.rays = number<uint64_t>(exr, "rays", file);

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "clock.h"
-#include "files/project_folder.h"
 #include "platform.h"
 
 namespace lab {
@@ -24,10 +23,8 @@ RenderParameters parameters_of_views(RenderParameters parameters) {
 
 // A view along the same camera rays, through smooth glass.
 Estimator view_of(Estimator estimator, const char* define) {
-    estimator.observed = estimator.file;
-    estimator.file = project_folder() / "shaders/observation/view.glsl";
     estimator.defines.insert(estimator.defines.end(), {define, "BEHIND_GLASS"});
-    return estimator;
+    return observed_by("view.glsl", std::move(estimator));
 }
 
 }  // namespace

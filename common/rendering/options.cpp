@@ -218,17 +218,16 @@ bool needs_no_window(const Options& options) {
 }
 
 const std::vector<View>& views() {
-    static const std::vector<View> all{
-        {"normals", "VIEW_NORMALS", DisplayTransform::as_is},
-        {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
-        {"focus", "VIEW_FOCUS", DisplayTransform::maximum},
-        {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
-        {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
-        {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
-        {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
-        {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
-        {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum, {}, true},
-        {"idle-lanes", "", DisplayTransform::as_is, "observation/idle_lanes/path_trace.glsl", true}};
+    static const std::vector<View> all{{"normals", "VIEW_NORMALS", DisplayTransform::as_is},
+                                       {"depth", "VIEW_DEPTH", DisplayTransform::maximum},
+                                       {"focus", "VIEW_FOCUS", DisplayTransform::maximum},
+                                       {"albedo", "VIEW_ALBEDO", DisplayTransform::exposure},
+                                       {"emission", "VIEW_EMISSION", DisplayTransform::exposure},
+                                       {"texture-coordinates", "VIEW_TEXTURE_COORDINATES", DisplayTransform::as_is},
+                                       {"triangles", "VIEW_TRIANGLES", DisplayTransform::as_is},
+                                       {"instances", "VIEW_INSTANCES", DisplayTransform::as_is},
+                                       {"bvh-steps", "VIEW_BVH_STEPS", DisplayTransform::maximum, "view.glsl", true},
+                                       {"idle-lanes", "", DisplayTransform::as_is, "idle_lanes/path_trace.glsl", true}};
     return all;
 }
 

@@ -13,13 +13,12 @@
 
 namespace lab {
 
-// A picture of something other than radiance: by shaders/observation/view.glsl with `define`, or by the file `observer` of
-// shaders/, which watches the chapter's estimator.
+// A picture of something other than radiance: by the file `observer` of shaders/observation/ with `define`, if it has one.
 struct View {
     std::string name;
     std::string define;
     DisplayTransform display;
-    std::string observer = {};
+    std::string observer = "view.glsl";
     bool is_special = false;  // only backends that name it among their special_views can show it
 };
 

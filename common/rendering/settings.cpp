@@ -178,26 +178,28 @@ std::string settings_text(const Chapter& chapter, const RenderParameters& parame
 
 Estimator estimator_of(const Chapter& chapter) { return {project_folder() / "chapters" / chapter.name / "path_trace.glsl"}; }
 
+Estimator observed_by(const std::string& file, Estimator estimator) {
+    estimator.observed = std::move(estimator.file);
+    estimator.file = project_folder() / "shaders" / "observation" / file;
+    return estimator;
+}
+
 Estimator make_estimator(const Chapter& chapter, const Options& options) {
-    const auto shared = project_folder() / "shaders";
     Estimator estimator = estimator_of(chapter);
     check_replacements(estimator, options.estimator.shaders);
     estimator.replacements = options.estimator.shaders;
     if (const auto& pixel = options.run.debug_pixel)
         estimator.defines.push_back("ONLY_PIXEL uvec2(" + std::to_string(pixel->x) + "u, " + std::to_string(pixel->y) + "u)");
-    if (const auto& view = options.image.view) {  // along the chapter's camera rays
-        estimator.observed = estimator.file;
-        estimator.file = shared / (view->observer.empty() ? "observation/view.glsl" : view->observer);
-        if (view->observer.empty()) estimator.defines.push_back(view->define);
-        if (asks_for_lens(options)) estimator.defines.emplace_back("FEATURE_LENS");
-        return estimator;
+    if (asks_for_lens(options)) estimator.defines.emplace_back("FEATURE_LENS");
+    if (const auto& view = options.image.view) {
+        if (!view->define.empty()) estimator.defines.push_back(view->define);
+        return observed_by(view->observer, std::move(estimator));
     }
     if (strategy_of(chapter, options) == Strategy::light) estimator.defines.emplace_back("STRATEGY STRATEGY_LIGHT");
     for (const ChapterChoice& choice : chapter.choices)
         if (const size_t value = value_of(choice, options); value > 0 && !choice.is_filter())
             estimator.defines.push_back(choice.define() + ' ' + choice.values[value].second);
     if (asks_for_sky(options)) estimator.defines.emplace_back("FEATURE_SKY");
-    if (asks_for_lens(options)) estimator.defines.emplace_back("FEATURE_LENS");
     estimator.max_threads_per_pixel = options.estimator.max_threads_per_pixel.value_or(estimator.max_threads_per_pixel);
     return estimator;
 }

@@ -48,6 +48,9 @@ std::string shown_instead(const Chapter& chapter, const Scene& scene, const Opti
 // How the chapter's estimator finds light under these options.
 Strategy strategy_of(const Chapter& chapter, const Options& options);
 
+// The same along the estimator's camera rays, but it shows what this file of shaders/observation/ makes of them.
+Estimator observed_by(const std::string& file, Estimator estimator);
+
 // The chapter's estimator, or what --view replaces it with.
 Estimator make_estimator(const Chapter& chapter, const Options& options);
 

@@ -220,14 +220,10 @@ void Session::show_filtered(uint32_t samples) {
 FilmImage Session::read_picture(FilmHeader& header) {
     FilmImage film = build_->renderer->film().read();
     if (!build_->denoiser) return film;
-    if (build_->denoiser->can_filter(film)) {
-        header.filter = build_->job.filter.name;
-        FilmImage filtered = build_->denoiser->filter(film);
-        build_->denoiser->keep(film);
-        return filtered;
-    }
     build_->denoiser->keep(film);
-    return film;
+    if (!build_->denoiser->can_filter(film)) return film;
+    header.filter = build_->job.filter.name;
+    return build_->denoiser->filter(film);
 }
 
 void Session::take_snapshots(uint32_t samples, double seconds) {

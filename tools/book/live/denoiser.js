@@ -3,11 +3,10 @@
 "use strict";
 
 live.Denoiser = (() => {
-    const {Rendering, ARRAY_WIDTH} = live.rendering, {Film} = live;
-    const SHORT = 20, LONG = 80;  // milliseconds of a draw, as for a rendering
-    const FIRST = 4;              // samples of the first picture that is filtered: both halves have some before and after 2
-    const FEATURE_SAMPLES = 16;   // of albedo and normals
-    const MOST_TURNS = 1 << 16;   // of the loops of a pixel in a step
+    const {Rendering, ARRAY_WIDTH, SHORT, LONG} = live.rendering, {Film} = live;
+    const FIRST = 4;             // samples of the first picture that is filtered: both halves have some before and after 2
+    const FEATURE_SAMPLES = 16;  // of albedo and normals
+    const MOST_TURNS = 1 << 16;  // of the loops of a pixel in a step
 
     return class Denoiser {
         // For what Picture.prepare() has returned. Throws a ShaderError if the filter does not compile.

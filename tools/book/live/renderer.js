@@ -353,5 +353,5 @@ void main() {
         }
     }
 
-    return {Renderer, Rendering, ARRAY_WIDTH, pause};
+    return {Renderer, Rendering, ARRAY_WIDTH, SHORT, LONG, pause};
 })();
