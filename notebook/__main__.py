@@ -31,6 +31,7 @@ QUESTIONS = {  # name: module
     "mistakes": "mistakes.cpp_mistake",
     "mutations": "mistakes.mutations",
     "native_speed": "measure.native_speed",
+    "network": "measure.network",
     "peer": "peers.peer",
     "renderers": "peers.compare",
     "report": "peers.report",

@@ -1,3 +1,15 @@
+#include "move_lamps.glsl"
+
+#if MOVE_LAMPS > 0
+// One loop over samples, each of which adds how the lamps' position changes its direct light.
+void render_samples(uvec2 position, uint first, uint end, uint step) {
+    for (uint i = first; i < end; i += step) {
+        uvec2 seed;
+        Ray ray = start_sample(position, i, seed);
+        finish_sample(get_change_by_moved_lamps(ray, seed));
+    }
+}
+#else
 // The loop of chapter 10, which adds the derivative of a path's light to the pixel if one is asked for.
 void render_samples(uvec2 position, uint first, uint end, uint step) {
     Path path;
@@ -14,3 +26,4 @@ void render_samples(uvec2 position, uint first, uint end, uint step) {
         i += step;
     }
 }
+#endif

@@ -20,6 +20,11 @@ std::array<double, 3> mean_over_pixels(const std::vector<FilmPixel>& pixels, glm
     return {mean.r, mean.g, mean.b};
 }
 
+vec3 shown(const vec3& mean) {
+    const float sum = mean.r + mean.g + mean.b;
+    return sum < 0 ? vec3(0, 0, -sum / 3) : mean;
+}
+
 // Sample counts of the two halves.
 glm::dvec2 sizes_of_halves(const FilmPixel& pixel) {
     return {pixel.sample_count - pixel.sample_count / 2, pixel.sample_count / 2};
@@ -103,7 +108,7 @@ Texture to_display(const FilmImage& film, DisplayTransform transform, float expo
             uint8_t* pixel = result.pixels.data() + 4 * i;
             pixel[0] = pixel[2] = pixel[3] = 255;
             if (film.pixels[i].invalid_count > 0) continue;
-            const vec3 mean(mean_of(film.pixels[i]));
+            const vec3 mean = shown(vec3(mean_of(film.pixels[i])));
             for (int channel = 0; channel < 3; ++channel) {
                 float value = std::clamp(scale * mean[channel], 0.0f, 1.0f);
                 if (transform == DisplayTransform::exposure) value = linear_to_srgb(value);

@@ -51,7 +51,7 @@ enum class DisplayTransform {
     as_is,     // clamped; already a colour
 };
 
-// Pixels with invalid samples are magenta.
+// Pixels with invalid samples are magenta, and negative ones, of a derivative, are blue.
 Texture to_display(const FilmImage& film, DisplayTransform transform, float exposure);
 
 }  // namespace lab

@@ -38,18 +38,18 @@ std::vector<MemoryNeed> Denoiser::memory_needs(uvec2 image_size) {
 
 Denoiser::Denoiser(const Device& device, const SceneBackend& scene_backend, const Estimator& estimator,
                    const FilterChoice& filter, const RenderParameters& parameters)
-    : emission_renderer_(device, scene_backend, estimator, without_bounces(parameters)),
+    : parameters_(without_bounces(parameters)),
+      emission_renderer_(device, scene_backend, estimator, parameters_),
       albedo_renderer_(device, scene_backend, view_of(estimator, "VIEW_ALBEDO"), parameters_of_views(parameters)),
       normal_renderer_(device, scene_backend, view_of(estimator, "VIEW_NORMALS"), parameters_of_views(parameters)),
       filter_(device, estimator, filter, parameters.image_size) {}
 
 void Denoiser::restart(const RenderParameters& parameters) {
-    emission_renderer_.restart(without_bounces(parameters));
+    parameters_ = without_bounces(parameters);
+    emission_renderer_.restart(parameters_);
     albedo_renderer_.restart(parameters_of_views(parameters));
     normal_renderer_.restart(parameters_of_views(parameters));
     kept_.clear();
-    emission_.clear();
-    albedo_ = normals_ = {};
     film_cost_ = filter_cost_ = {};
 }
 
@@ -68,16 +68,15 @@ const FilmImage* Denoiser::film_before(const FilmImage& film) const {
     return best;
 }
 
-FilmImage Denoiser::render(Renderer& renderer, uint32_t samples) {
+void Denoiser::render(uint32_t film, Renderer& renderer, uint32_t samples) {
     const auto start = Clock::now();
     const double cpu_start = processor_seconds(), device_start = renderer.device_seconds();
     while (renderer.advance(samples)) {
     }
-    FilmImage film = renderer.film().read();
+    filter_.set(film, renderer.film());
     film_cost_.seconds += seconds_since(start);
     film_cost_.device_seconds += renderer.device_seconds() - device_start;
     film_cost_.cpu_seconds += processor_seconds() - cpu_start;
-    return film;
 }
 
 Denoiser::Cost Denoiser::cost() const {
@@ -85,27 +84,20 @@ Denoiser::Cost Denoiser::cost() const {
             film_cost_.cpu_seconds + filter_cost_.cpu_seconds};
 }
 
-const FilmImage& Denoiser::emission(uint32_t samples) {
-    auto found = emission_.find(samples);
-    if (found == emission_.end()) found = emission_.emplace(samples, render(emission_renderer_, samples)).first;
-    return found->second;
-}
-
 FilmImage Denoiser::filter(const FilmImage& film) {
-    if (albedo_.pixels.empty()) {
-        albedo_ = render(albedo_renderer_, feature_samples);
-        normals_ = render(normal_renderer_, feature_samples);
-    }
     const FilmImage& before = *film_before(film);
-    const FilmImage& emission_before = emission(before.min_samples());
-    const FilmImage& emission_now = emission(film.min_samples());
+    render(FILM_ALBEDO, albedo_renderer_, feature_samples);
+    render(FILM_NORMALS, normal_renderer_, feature_samples);
+    if (emission_renderer_.samples() > before.min_samples()) emission_renderer_.restart(parameters_);
+    render(FILM_EMISSION_BEFORE, emission_renderer_, before.min_samples());
+    render(FILM_EMISSION, emission_renderer_, film.min_samples());
     const auto start = Clock::now();
     const double cpu_start = processor_seconds();
-    FilmImage filtered = filter_.apply({&film, &before, &emission_now, &emission_before, &albedo_, &normals_});
+    filter_.set(FILM_BEFORE, before);
+    filter_.set(FILM_NOW, film);
+    FilmImage filtered = filter_.apply();
     filter_cost_ = {seconds_since(start), filter_.device_seconds(), processor_seconds() - cpu_start};
-    // Later films have more samples.
-    kept_.erase(kept_.begin(), kept_.find(before.min_samples()));
-    emission_.erase(emission_.begin(), emission_.find(before.min_samples()));
+    kept_.erase(kept_.begin(), kept_.find(before.min_samples()));  // later films have more samples
     return filtered;
 }
 

@@ -35,16 +35,15 @@ class Denoiser {
     Cost cost() const;
 
   private:
-    FilmImage render(Renderer& renderer, uint32_t samples);
     // The film that was kept from which filter() takes variances; null if there is none.
     const FilmImage* film_before(const FilmImage& film) const;
-    // What the camera sees of lamps and background with so many samples.
-    const FilmImage& emission(uint32_t samples);
+    // Hands the filter a film of so many samples, which may be there already.
+    void render(uint32_t film, Renderer& renderer, uint32_t samples);
 
+    RenderParameters parameters_;  // of the emission
     Renderer emission_renderer_, albedo_renderer_, normal_renderer_;
     PictureFilter filter_;
-    std::map<uint32_t, FilmImage> kept_, emission_;  // by samples
-    FilmImage albedo_, normals_;                     // empty until they are needed
+    std::map<uint32_t, FilmImage> kept_;  // by samples
     Cost film_cost_, filter_cost_;
 };
 

@@ -48,6 +48,8 @@ class Film {
     FilmImage read() const;
     void keep();
     void write(const FilmImage& image);  // of the same size
+    // The pixels on the device, without what light paths added.
+    const Buffer& pixels() const { return buffer_; }
 
   private:
     std::vector<Binding> bind(const Buffer& pixels, const std::optional<Buffer>& splats) const;

@@ -3,13 +3,16 @@
 #include <algorithm>
 
 #include "files/project_folder.h"
-#include "rendering/film.h"
 
 namespace lab {
 namespace {
 
+// As large as a film, to be copied from one, but bound as a whole.
 MemoryNeed film_need(uvec2 size) {
-    return {"pixels that a filter reads", size_t{size.x} * size.y * sizeof(FilmPixel), vk::BufferUsageFlagBits::eStorageBuffer};
+    MemoryNeed need = Film::memory_need(size.x, size.y);
+    need.what = "pixels that a filter reads";
+    need.is_seen_in_parts = false;
+    return need;
 }
 
 MemoryNeed pixel_need(uvec2 size) {
@@ -55,11 +58,19 @@ void PictureFilter::run_step(FilterParameters parameters, uint32_t number) {
     }
 }
 
-FilmImage PictureFilter::apply(const FilterFilms& films) {
-    for (size_t i = 0; i < films.size(); ++i)
-        films_[i].write(films[i]->pixels.data(), films[i]->pixels.size() * sizeof(FilmPixel));
-    FilmImage result{films[FILM_NOW]->width, films[FILM_NOW]->height, {}};
-    FilterParameters parameters{.image_size = {result.width, result.height}, .first_block = 0, .step = 0, .pass = 0};
+void PictureFilter::set(uint32_t film, const FilmImage& image) {
+    size_ = {image.width, image.height};
+    films_[film].write(image.pixels.data(), image.pixels.size() * sizeof(FilmPixel));
+}
+
+void PictureFilter::set(uint32_t film, const Film& image) {
+    size_ = {image.width(), image.height()};
+    films_[film].copy(image.pixels());
+}
+
+FilmImage PictureFilter::apply() {
+    FilmImage result{size_.x, size_.y, std::vector<FilmPixel>(size_t{size_.x} * size_.y)};
+    FilterParameters parameters{.image_size = size_, .first_block = 0, .step = 0, .pass = 0};
     device_seconds_ = 0;
     uint32_t number = 0;
     const auto run = [&](uint32_t step) {
@@ -70,7 +81,6 @@ FilmImage PictureFilter::apply(const FilterFilms& films) {
     run(FILTER_STEP_SMOOTH);
     for (; parameters.pass < passes_; ++parameters.pass) run(FILTER_STEP_PASS);
     run(FILTER_STEP_PICTURE);
-    result.pixels.resize(films[FILM_NOW]->pixels.size());
     filtered_film_.read(result.pixels.data(), result.pixels.size() * sizeof(FilmPixel));
     return result;
 }

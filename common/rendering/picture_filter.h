@@ -2,14 +2,11 @@
 #pragma once
 #include <array>
 
-#include "film/film_image.h"
 #include "gpu/compute_kernel.h"
+#include "rendering/film.h"
 #include "rendering/settings.h"
 
 namespace lab {
-
-// What a filter reads, by FILM_NOW and the other constants of shaders/interface.h.
-using FilterFilms = std::array<const FilmImage*, FILTER_FILM_COUNT>;
 
 class PictureFilter {
   public:
@@ -19,9 +16,13 @@ class PictureFilter {
     // outlive the filter.
     PictureFilter(const Device& device, const Estimator& estimator, const FilterChoice& filter, uvec2 image_size);
 
-    // All films have the same size, at most the one above. In each half of each pixel, FILM_NOW must have samples that
-    // FILM_BEFORE has not. The halves of the result are the filtered halves.
-    FilmImage apply(const FilterFilms& films);
+    // What the filter reads as this film: FILM_NOW or another constant of shaders/interface.h. All must have the same size, at
+    // most the one above.
+    void set(uint32_t film, const FilmImage& image);
+    void set(uint32_t film, const Film& image);  // one without light paths
+    // Filters these films, which must all be set. In each half of each pixel, FILM_NOW must have samples that FILM_BEFORE has
+    // not. The halves of the result are the filtered halves.
+    FilmImage apply();
     double device_seconds() const { return device_seconds_; }  // of the last picture
 
   private:
@@ -29,6 +30,7 @@ class PictureFilter {
 
     const Device* device_;
     uint32_t passes_;
+    uvec2 size_{0};
     std::vector<Buffer> films_;
     Buffer filtered_film_;
     std::array<Buffer, 2> pixels_;        // each step reads one of them and writes the other

@@ -34,7 +34,7 @@ void draw_numbers(const Comparison& comparison, const Session& first) {
     const auto row = [](const char* side, const Session& session) {
         const auto error = session.relative_error();
         text_in_words(side + (" " + samples_text(session.samples())) + " samples per pixel in " +
-                      duration_text(session.seconds()) + ", noise " +
+                      duration_text(session.seconds()) + (session.is_filtered() ? ", error " : ", noise ") +
                       (error ? short_number(100 * *error) + " %" : "not known yet"));
     };
     row("left:", first);

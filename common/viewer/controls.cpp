@@ -78,11 +78,11 @@ void draw_progress(const Session& session, double frames_per_second) {
     // One line whatever it says, so that the controls below keep their places.
     if (session.is_building())
         ImGui::TextUnformatted("building ...");
-    else if (const auto error = session.relative_error(); error && *error > wanted)
+    else if (const auto error = session.relative_error(); error && *error > wanted && !session.is_filtered())
         ImGui::TextWrapped("noise %.3g %%, 1 %% in %s", 100 * *error,
                            duration_text(seconds * (std::pow(*error / wanted, 2) - 1)).c_str());
     else if (error)
-        ImGui::Text("noise %.2g %%", 100 * *error);
+        ImGui::Text("%s %.2g %%", session.is_filtered() ? "error" : "noise", 100 * *error);
     else
         ImGui::TextUnformatted(session.reduction() > 1 && !session.is_stuck() ? "reduced while the camera moves"
                                                                               : "error not known yet");

@@ -72,6 +72,7 @@ class Session {
     uint32_t reduction() const { return reduction_; }  // width of a rendered pixel in pixels of the picture
     // Relative error (root of rel_mse), estimated from the halves of the samples.
     std::optional<double> relative_error() const;
+    bool is_filtered() const { return build_->denoiser != nullptr; }
 
     // The test against the scene's reference; null without one, and verdict_text() says why.
     const LiveVerdict* verdict() const { return std::get_if<LiveVerdict>(&verdict_); }

@@ -15,7 +15,7 @@ from tables.cpu_table import cpu_table
 from tables.facet_tables import furnace_table, sampling_table
 from tables.lens_table import lens_table
 from tables.derivative_table import derivative_table
-from tables.filter_table import filter_table
+from tables.filter_table import filter_table, network_table
 from tables.light_path_table import light_path_table
 from tables.light_table import light_table
 from tables.media_table import media_table
@@ -57,6 +57,7 @@ OWN_TABLES = {
     "light paths": light_path_table,
     "derivatives": derivative_table,
     "filters": filter_table,
+    "network": network_table,
     "media strategies": media_table,
     "check": lambda: confusion_table(read_json(RECORDS / "check/confusion.json")),
     "no ray tracing cores": lambda: NO_RAY_TRACING_CORES,

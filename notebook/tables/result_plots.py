@@ -17,6 +17,7 @@ from tables.best_table import best_and_peers
 from tables.confusion_table import CONDITIONS, rates
 from tables.cpu_table import cpu_gains
 from tables.facet_tables import WAYS, WAYS_IN_WORDS, lost_by_degrees, sampling_cost
+from tables.filter_table import crossing
 from tables.records import RECORDS, load_records
 from tables.renderer_table import renderer_gains
 
@@ -300,7 +301,7 @@ def facets():
 
 PLOTS = {
     f"results_{draw.__name__}": draw for draw in (ideas, backends, mitsuba, cpu_backends, renderers, features, check, facets)
-}
+} | {"crossing": crossing}
 
 
 # ---------------------------------------------------------------------------------------------- files

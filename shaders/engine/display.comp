@@ -28,6 +28,12 @@ vec3 get_srgb(vec3 linear) {
     return mix(12.92 * linear, 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
 }
 
+// Derivatives may be negative. Such pixels are blue.
+vec3 get_shown(vec3 value) {
+    float sum = value.r + value.g + value.b;
+    return sum < 0.0 ? vec3(0.0, 0.0, -sum / 3.0) : value;
+}
+
 void show_pixel(uvec2 position) {
     if (any(greaterThanEqual(position, display.image_size))) return;
     uvec2 film_position = position * display.film_size / display.image_size;
@@ -39,7 +45,7 @@ void show_pixel(uvec2 position) {
 #ifdef SPLATS
     add_splats(pixel, film_index + display.first_film_pixel);
 #endif
-    vec3 radiance = (pixel.sum + pixel.compensation) / float(pixel.sample_count);
+    vec3 radiance = get_shown((pixel.sum + pixel.compensation) / float(pixel.sample_count));
 
     if (display.divides_by_largest == 2u) {
         float largest = max(max(radiance.r, radiance.g), max(radiance.b, 0.0));

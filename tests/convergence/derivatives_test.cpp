@@ -123,5 +123,112 @@ TEST_P(DerivativesOf, AreDifferencesOfPictures) {
     expect_agreement(GetParam().scene, derivative, difference, {0.02, 0.5});
 }
 
+// ---------------------------------------------------------------------------------------------- lamps that move
+constexpr float step_of_lamps = 0.02f;  // to each side: the third derivative adds some 10^-4
+
+struct LitCorner {
+    vec3 moved{0};           // the lamp
+    bool has_screen = true;  // between lamp and floor, out of the camera's sight
+};
+
+// A floor and two walls of three colours, lit from above.
+Scene lit_corner(const LitCorner& corner) {
+    const vec3 lamp = vec3(-0.2f, 2, -0.2f) + corner.moved;
+    std::vector<Quad> quads{{{-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0},
+                            {{-1, 0, -1}, {2, 0, 0}, {0, 1, 0}, 1},
+                            {{-1, 0, 1}, {0, 0, -2}, {0, 1, 0}, 2},
+                            {lamp, {0.5f, 0, 0}, {0, 0, 0.5f}, 3}};
+    if (corner.has_screen) quads.push_back({{-0.3f, 1.4f, -0.3f}, {0.5f, 0, 0}, {0, 0, 0.5f}, 0});
+    Scene scene = make_scene({diffuse_material(vec3(0.7f)), diffuse_material({0.3f, 0.6f, 0.2f}),
+                              diffuse_material({0.6f, 0.1f, 0.1f}), diffuse_material(vec3(0), vec3(10))},
+                             quads);
+    scene.camera = {.position = {0.4f, 1.2f, 1.2f}, .target = {-0.3f, 0.2f, -0.3f}, .up = {0, 1, 0}, .vertical_fov = 60};
+    return scene;
+}
+
+class DerivativesByLamps : public testing::TestWithParam<int> {
+  protected:
+    // The light that the floor and the walls scatter once, or with `differentiated` its derivative.
+    static Batches direct_light(const LitCorner& corner, bool differentiated = false) {
+        RenderSettings settings = derivative_settings({});
+        settings.only_path_length = settings.max_path_length = 1;
+        settings.strategy = Strategy::light;
+        settings.samples = 256;
+        if (differentiated) settings.estimator.defines.push_back("MOVE_LAMPS " + std::to_string(GetParam() + 1));
+        return render_batches(lit_corner(corner), settings, derivative_batches);
+    }
+
+    // Of pictures whose lamp is a little farther along the axis, and less far. Their random numbers are the same.
+    static Batches difference(bool has_screen) {
+        vec3 step(0);
+        step[GetParam()] = step_of_lamps;
+        Batches result = direct_light({step, has_screen});
+        add(result, -1, direct_light({-step, has_screen}));
+        for (auto& image : result.images)
+            for (glm::dvec3& pixel : image) pixel /= 2.0 * step_of_lamps;
+        return result;
+    }
+
+    static void add(Batches& sum, double factor, const Batches& summand) {
+        for (size_t i = 0; i < sum.images.size(); ++i)
+            for (size_t pixel = 0; pixel < sum.images[i].size(); ++pixel)
+                sum.images[i][pixel] += factor * summand.images[i][pixel];
+    }
+
+    // The pixels where some samples are hidden by the screen and some are not, wherever the lamp is in these differences.
+    static std::vector<bool> find_penumbrae() {
+        std::vector<bool> found;
+        for (const float side : {-1.0f, 1.0f}) {
+            vec3 moved(0);
+            moved[GetParam()] = 1.5f * side * step_of_lamps;
+            const Batches lit = direct_light({moved}), unhidden = direct_light({moved, false});
+            found.resize(lit.images[0].size());
+            for (size_t pixel = 0; pixel < found.size(); ++pixel) {
+                size_t all = 0, none = 0;
+                for (size_t i = 0; i < lit.images.size(); ++i) {
+                    all += lit.images[i][pixel] == unhidden.images[i][pixel];
+                    none += lit.images[i][pixel] == glm::dvec3(0);
+                }
+                found[pixel] = found[pixel] || (all < lit.images.size() && none < lit.images.size());
+            }
+        }
+        return found;
+    }
+
+    // Errors are found relative to a mean, and that of a derivative may be 0: adds twice the light, which is larger than both.
+    static void expect_same(const char* what, Batches derivative, Batches differences, const Batches& light) {
+        add(derivative, 2, light);
+        add(differences, 2, light);
+        expect_agreement(what, derivative, differences, {0.005, 0.1});
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Axes, DerivativesByLamps, testing::Range(0, 3),
+                         [](const auto& info) { return std::string(1, "XYZ"[info.param]); });
+
+TEST_P(DerivativesByLamps, AreDifferencesWhereNothingCastsAShadow) {
+    expect_same("no screen", direct_light({.has_screen = false}, true), difference(false), direct_light({.has_screen = false}));
+}
+
+// A penumbra is where some light samples are hidden and some are not. In it the edge of the shadow moves.
+TEST_P(DerivativesByLamps, AreWrongInPenumbraeAlone) {
+    Batches derivative = direct_light({}, true), differences = difference(true);
+    const std::vector<bool> is_penumbra = find_penumbrae();
+    const size_t half = derivative.images.size() / 2;
+    double inside = 0, outside = 0, all = 0;
+    for (size_t pixel = 0; pixel < is_penumbra.size(); ++pixel) {
+        glm::dvec3 error[2]{}, change[2]{};  // of independent halves, whose product has no noise on average
+        for (size_t i = 0; i < derivative.images.size(); ++i) {
+            error[i / half] += derivative.images[i][pixel] - differences.images[i][pixel];
+            change[i / half] += differences.images[i][pixel];
+            if (is_penumbra[pixel]) derivative.images[i][pixel] = differences.images[i][pixel] = glm::dvec3(0);
+        }
+        (is_penumbra[pixel] ? inside : outside) += glm::dot(error[0], error[1]);
+        all += glm::dot(change[0], change[1]);
+    }
+    EXPECT_GE(inside, 0.95 * (inside + outside)) << "nearly all of the squared error lies in the penumbrae";
+    EXPECT_GE(inside, 0.05 * all) << "and it is not small";
+    expect_same("outside of the penumbrae", derivative, differences, direct_light({}));
+}
+
 }  // namespace
 }  // namespace lab

@@ -11,7 +11,8 @@
 namespace lab {
 namespace {
 
-// Radiance from far below to far above the displayable range, with different sample counts and some invalid samples.
+// Radiance from far below to far above the displayable range, with different sample counts, some invalid samples and some
+// negative values.
 FilmImage make_film(uint32_t width, uint32_t height) {
     FilmImage film{width, height, {}};
     for (uint32_t i = 0; i < width * height; ++i) {
@@ -21,6 +22,7 @@ FilmImage make_film(uint32_t width, uint32_t height) {
         pixel.sum = static_cast<float>(pixel.sample_count) * vec3(value, 0.5f * value, 1.7f * value);
         pixel.compensation = 0.01f * pixel.sum;
         if (i % 11 == 0) pixel.sum = vec3(0);
+        if (i % 17 == 0) pixel.sum *= -1.0f;
         if (i % 13 == 0) pixel.invalid_count = 1;
         film.pixels.push_back(pixel);
     }

@@ -41,11 +41,11 @@ void MadeFilms::set(uint32_t x, uint32_t y, const std::array<vec3, 2>& means, fl
 }
 
 FilmImage MadeFilms::filter(const std::string& name) const {
-    FilterFilms pointers{};
-    for (size_t i = 0; i < films.size(); ++i) pointers[i] = &films[i];
     const FilmImage& now = films[FILM_NOW];
     const Estimator estimator = chapter_estimator(chapter_named("denoising"));
-    return PictureFilter(test_device(), estimator, filter_named(name), {now.width, now.height}).apply(pointers);
+    PictureFilter filter(test_device(), estimator, filter_named(name), {now.width, now.height});
+    for (uint32_t i = 0; i < films.size(); ++i) filter.set(i, films[i]);
+    return filter.apply();
 }
 
 DenoisedScene::DenoisedScene(Scene scene, const RenderSettings& settings, const std::string& filter)

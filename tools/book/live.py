@@ -52,6 +52,7 @@ SCRIPTS = [
     "renderer.js",
     "denoiser.js",
     "editor.js",
+    "solver.js",
     "plot.js",
     "camera.js",
     "path.js",

@@ -12,7 +12,7 @@ from pathlib import Path
 from check.grading import OPTIONS, SCENES
 from check.submission import replaced
 from course.bug import new_render
-from docs import figure_plots, first_steps, tables
+from docs import figure_plots, first_steps, signed_figures, tables
 from docs.bug_blocks import GALLERY, find_bug
 from project import BINARIES, CHAPTERS, ROOT, Parser, UserError, failure_text, read_json, run_program, show_progress
 from references.images import read_rgb
@@ -213,6 +213,10 @@ FIGURES = (
         "noise_and_bias": (renders_of_noise_and_bias, figure_plots.sheet_of("noise_and_bias")),
         "convergence": (renders_of_convergence, figure_plots.convergence),
         "first_steps": (renders_of_first_steps, figure_plots.first_steps),
+    }
+    | {
+        name: (partial(getattr(signed_figures, f"renders_of_{name}"), Render, *place), getattr(signed_figures, name))
+        for name, place in named("signed_figures").items()
     }
     | {
         name: (list, getattr(figure_plots, name))

@@ -3,8 +3,9 @@
 "picture", "thumbnail": the scenes of its pictures. "convergence_samples": samples of its curve in the plot of all chapters' errors.
 "compared_on": references on which the report's record compares it with the chapters before. "studies": a list,
 in each "on", references or scenes without one, and "cases" that vary an option, name -> options.
-"figures": pictures made of tiles, see docs/figures.py. "samplers": for ./lab sample, see lesson/sample.py. "examples": tables of
-worked examples, with rows of a label, a statement and what is shown of its result. These three have names.
+"figures": pictures made of tiles, see docs/figures.py; "signed_figures": scenes of those that docs/signed_figures.py makes. "samplers":
+for ./lab sample, see lesson/sample.py. "examples": tables of worked examples, with rows of a label, a statement and what is shown of
+its result. These four have names.
 """
 import math
 

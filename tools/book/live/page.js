@@ -41,11 +41,15 @@ live.page = (() => {
             this.editor = new live.Editor(this.chapter, () => this.edited(), say, this.keepsTexts);
             this.controls = new live.Controls(this);
             this.picture = new live.Picture(this);
+            const choice = this.controls.choices.find(({chooses_material}) => chooses_material);
+            this.solver = choice && new live.Solver(this, choice);
             await this.editor.readLink();
             const {root, hint, caption, path, numbers} = this.picture;
             const parts = [this.edits, root, hint, caption, path.root, this.verdict, this.plot, numbers, this.note];
             const columns = [element("div", {class: "live-picture"}, ...parts), this.editor.root];
-            this.root.replaceChildren(this.controls.root, element("div", {class: "live-columns"}, ...columns), this.results);
+            const solver = this.solver ? [this.solver.root] : [];
+            this.root.replaceChildren(
+                this.controls.root, element("div", {class: "live-columns"}, ...columns), ...solver, this.results);
             if (this.bug) {
                 const place = this.about.pictures.findIndex(({name}) => name === this.root.dataset.picture);
                 this.controls.scene.value = Math.max(place, 0);
@@ -167,6 +171,7 @@ live.page = (() => {
             if (!this.activate()) return;
             this.setPaused(false);
             this.controls.reset();
+            this.solver?.reset();
             this.picture.camera?.reset();
             const checking = this.checking = live.check(this);
             try {

@@ -138,6 +138,7 @@ live.Picture = (() => {
         // Why the picture of this chapter has no verdict; empty if it has.
         get withoutVerdict() {
             const {picture, renderings: [{parameters}], renderer: {layout}} = this;
+            if (this.frame.solver?.isChanged) return "colours have been changed";
             if (!picture.reference) return "this scene has no reference";
             if (this.frame.controls.shownInstead) return `the picture shows ${this.frame.controls.shownInstead}`;
             const differs = member => {
@@ -195,12 +196,13 @@ live.Picture = (() => {
             this.numbers.textContent = "compiling …";
             this.errors = [];
             this.started = performance.now();
-            const scene = await loadData(this.folder, picture.scene);
+            const {solver} = frame, scene = await loadData(this.folder, picture.scene);
             if (turn !== this.turn) return false;
             if (this.picture?.scene !== picture.scene) this.camera = new live.Camera(picture.parameters, scene.camera);
             this.picture = picture;
             const reference = picture.unpacked ??= picture.reference ? await loadReference(this.folder, picture.reference) : null;
-            const state = await this.prepare(picture, editor.sources), {rendering} = state, states = [state];
+            const changed = {...picture, scene: await solver?.changed(picture.scene) ?? scene};
+            const state = await this.prepare(changed, editor.sources), {rendering} = state, states = [state];
             if (turn === this.turn && controls.compared.checked && before) states.push(await this.prepare(before, live.sources));
             try {
                 if (controls.filter) state.denoiser = await live.Denoiser.make(this, state, controls.filter);

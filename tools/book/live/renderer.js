@@ -21,7 +21,8 @@ void main() {
     if (texelFetch(web_film_before[2], place, 0).y == 0u) place = (place & ~7) | (place & 1);  // a preview has rendered these pixels
     uvec4 a = texelFetch(web_film_before[0], place, 0), b = texelFetch(web_film_before[1], place, 0), c = texelFetch(web_film_before[2], place, 0);
     vec3 mean = (uintBitsToFloat(a.xyz) + uintBitsToFloat(uvec3(a.w, b.xy))) / float(max(c.y, 1u));
-    vec3 shown = clamp(mean, 0.0, 1.0);
+    float sum = mean.r + mean.g + mean.b;  // derivatives may be negative: such pixels are blue
+    vec3 shown = clamp(sum < 0.0 ? vec3(0.0, 0.0, -sum / 3.0) : mean, 0.0, 1.0);
     vec3 curved = mix(12.92 * shown, 1.055 * pow(shown, vec3(1.0 / 2.4)) - 0.055, greaterThan(shown, vec3(0.0031308)));
     colour = vec4(c.z > 0u ? vec3(1.0, 0.0, 1.0) : is_srgb ? curved : shown, 1.0);
 }`;
