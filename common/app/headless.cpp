@@ -163,6 +163,7 @@ class HeadlessRender {
         header_ = job_.header;
         header_.seconds = seconds_so_far;
         header_.rays += renderer_.rays();
+        if (denoiser_) header_.shows.clear();  // until it is filtered
         filtered_.reset();
         filter_error_.reset();
     }
@@ -175,6 +176,7 @@ class HeadlessRender {
             reference_ ? measure_filter_error(*filtered_, snapshot_, *reference_) : estimate_filter_error(*filtered_, snapshot_);
         header_.seconds += denoiser_->cost().seconds;
         header_.filter = job_.filter.name;
+        header_.shows = job_.header.shows;
     }
 
     const FilmImage& picture() const { return filtered_ ? *filtered_ : snapshot_; }
@@ -249,7 +251,9 @@ class HeadlessRender {
                 100 * std::sqrt(filter_error_->variance), 100 * std::sqrt(filter_error_->squared_bias()),
                 100 * std::sqrt(filter_error_->unfiltered));
         else if (job_.filter.passes > 0)
-            std::printf("filter         none: it needs four samples a pixel or more\n");
+            std::printf("filter         none: it needs %s\n", snapshot_.min_samples() < 4
+                                                                  ? "four samples a pixel or more"
+                                                                  : "two new samples a pixel or more: raise --samples");
         else if (error && shows_light)
             std::printf("%-15s%.3g %% (root of the relative mean squared error, %s)\n", reference_ ? "error" : "noise",
                         100 * error->rel_rmse, reference_ ? "against the reference" : "estimated; a bias does not show in it");

@@ -13,7 +13,7 @@ glm::dvec3 pixel_of(const Image& image, size_t i) {
     return {image.pixels[3 * i], image.pixels[3 * i + 1], image.pixels[3 * i + 2]};
 }
 
-// `squared_error(i)` and `variance(i)` of pixel i of the image, by channel, relative to the values of `scale`.
+// `squared_error(i)` and `variance(i)` of pixel i of the image, by channel, relative to the values of `scale`, of any sign.
 template <typename SquaredError, typename Variance>
 ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, const Variance& variance) {
     const size_t size = scale.pixels.size();
@@ -21,7 +21,7 @@ ErrorMetrics metrics(const Image& scale, const SquaredError& squared_error, cons
     const double mean = sum_in_parallel<double>(size,
                                                 [&](size_t begin, size_t end) {
                                                     double sum = 0;
-                                                    for (size_t i = begin; i < end; ++i) sum += scale.pixels[i];
+                                                    for (size_t i = begin; i < end; ++i) sum += std::abs(scale.pixels[i]);
                                                     return sum;
                                                 }) /
                         count;

@@ -38,6 +38,14 @@ class FilterTest(RenderTest):
         self.assertIn("needs four samples", text)
         self.assertNotIn("filter", Exr(self.folder / "few.exr").attributes)
 
+    def test_a_filter_needs_new_samples(self):
+        self.filtered("first", "--samples=8")
+        options = self.command("--samples=8", f"--resume={self.folder / 'first.exr'}", "--filter=nl_means")
+        text = self.render(*options, "--output", self.folder / "same.exr", program=CHAPTER)
+        self.assertIn("needs two new samples a pixel", text)
+        attributes = Exr(self.folder / "same.exr").attributes
+        self.assertFalse({"filter", "shows"} & set(attributes))
+
     def test_pixels_that_a_filter_divides_by_0_are_counted(self):
         text = (PROJECT / "chapters/16_denoising/filter.glsl").read_text(encoding="utf-8")
         file = self.write("filter.glsl", text.replace("= sum / weights;", "= sum * (1.0 / (weights * 0.0));"))

@@ -87,5 +87,16 @@ TEST(Stopping, NeitherBiasesThePictureNorItsError) {
     EXPECT_LT(looks, 12);
 }
 
+// Of a derivative, which may be negative: relative to its size, whatever its sign.
+TEST(Stopping, HasNoSign) {
+    FilmImage film{16, 16, {}};
+    for (uint32_t i = 0; i < 256; ++i) film.pixels.push_back({vec3(i < 128 ? 1.0f : 3.0f), vec3(0), vec3(0.5f), 16, 0});
+    const double expected = estimate_error(film)->rel_mse;
+    for (FilmPixel& pixel : film.pixels) pixel.sum *= -1.0f;
+    EXPECT_EQ(estimate_error(film)->rel_mse, expected);
+    for (size_t i = 0; i < 128; ++i) film.pixels[i].sum *= -1.0f;
+    EXPECT_EQ(estimate_error(film)->rel_mse, expected);
+}
+
 }  // namespace
 }  // namespace lab
