@@ -27,8 +27,8 @@ def denoised(color, albedo, normals):
         from mitsuba_oidn import denoise
     except ImportError:
         raise UserError("./lab notebook network needs Open Image Denoise: pip install mitsuba-oidn") from None
-    arrays = (np.ascontiguousarray(image, np.float32) for image in (np.maximum(color, 0), albedo, 2 * normals - 1))
-    color, albedo, normals = arrays
+    images = np.maximum(color, 0), albedo, 2 * normals - 1
+    color, albedo, normals = (np.ascontiguousarray(image, np.float32) for image in images)
     return np.asarray(denoise(color, albedo=albedo, normal=normals, hdr=True), float)
 
 

@@ -1,7 +1,7 @@
 """Chapter 16: what filters gain at equal samples, as a plot, and at equal time, as a table, from the records of filters."""
 from statistics import mean
 
-from docs.page_plots import GREY, finish_axis, lines, new_figure, plain
+from docs.page_plots import COLOURS, GREY, MARKERS, finish_axis, new_figure, plain
 from project import table
 from tables.records import load_records
 
@@ -69,7 +69,8 @@ def crossing():
         axis.axhline(1, color=GREY, linewidth=1.2)
         for index, case in enumerate(cases):
             errors = shown[name, case["scene"]]
-            lines(axis, list(errors), [[error, None, None] for error in errors.values()], index, case["scene"])
+            style = {"color": COLOURS[index], "marker": MARKERS[index], "markersize": 5, "linewidth": 1.2}
+            axis.plot(list(errors), list(errors.values()), **style, label=case["scene"])
         finish_axis(axis, xscale="log", yscale="log", xlabel="samples per pixel", title=text, ylim=(0.05, 20))
         axis.xaxis.set_major_formatter(plain)
         axis.yaxis.set_major_formatter(plain)
