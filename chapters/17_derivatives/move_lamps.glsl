@@ -13,7 +13,7 @@
 
 #if MOVE_LAMPS > 0
 #if defined(FEATURE_SPECULAR) || defined(FEATURE_MICROFACETS) || defined(FEATURE_MEDIA)
-#error lamps can move here in scenes without gloss and media alone
+#error lamps move here only without gloss and media: use a scene of matte surfaces
 #endif
 
 // ∂/∂y_a of the direct light that the camera sees, per unit of length.

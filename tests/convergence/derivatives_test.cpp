@@ -25,6 +25,19 @@ RenderSettings derivative_settings(std::optional<uint32_t> material) {
     return settings;
 }
 
+void add(Batches& sum, double factor, const Batches& summand) {
+    for (size_t i = 0; i < sum.images.size(); ++i)
+        for (size_t pixel = 0; pixel < sum.images[i].size(); ++pixel) sum.images[i][pixel] += factor * summand.images[i][pixel];
+}
+
+// The derivative that pictures at a step to each side tell.
+Batches central_difference(Batches after, const Batches& before, double step) {
+    add(after, -1, before);
+    for (auto& image : after.images)
+        for (glm::dvec3& pixel : image) pixel /= 2 * step;
+    return after;
+}
+
 // In a closed surface of albedo a and emission 1 the light of k bounces is a^k, and its derivative k a^k.
 TEST(Derivatives, OfAFurnaceAreTheSeries) {
     const vec3 albedo(0.2f, 0.5f, 0.8f);
@@ -115,11 +128,7 @@ TEST_P(DerivativesOf, AreDifferencesOfPictures) {
         changed.materials[0].specular_albedo *= factor;
         return render_batches(changed, settings_of({}), derivative_batches);
     };
-    Batches difference = render_with(std::exp(h));
-    const Batches darker = render_with(std::exp(-h));
-    for (size_t i = 0; i < difference.images.size(); ++i)
-        for (size_t pixel = 0; pixel < difference.images[i].size(); ++pixel)
-            difference.images[i][pixel] = (difference.images[i][pixel] - darker.images[i][pixel]) / (2.0 * h);
+    const Batches difference = central_difference(render_with(std::exp(h)), render_with(std::exp(-h)), h);
     expect_agreement(GetParam().scene, derivative, difference, {0.02, 0.5});
 }
 
@@ -162,17 +171,7 @@ class DerivativesByLamps : public testing::TestWithParam<int> {
     static Batches difference(bool has_screen) {
         vec3 step(0);
         step[GetParam()] = step_of_lamps;
-        Batches result = direct_light({step, has_screen});
-        add(result, -1, direct_light({-step, has_screen}));
-        for (auto& image : result.images)
-            for (glm::dvec3& pixel : image) pixel /= 2.0 * step_of_lamps;
-        return result;
-    }
-
-    static void add(Batches& sum, double factor, const Batches& summand) {
-        for (size_t i = 0; i < sum.images.size(); ++i)
-            for (size_t pixel = 0; pixel < sum.images[i].size(); ++pixel)
-                sum.images[i][pixel] += factor * summand.images[i][pixel];
+        return central_difference(direct_light({step, has_screen}), direct_light({-step, has_screen}), step_of_lamps);
     }
 
     // The pixels where some samples are hidden by the screen and some are not, wherever the lamp is in these differences.

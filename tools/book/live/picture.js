@@ -201,7 +201,7 @@ live.Picture = (() => {
             if (this.picture?.scene !== picture.scene) this.camera = new live.Camera(picture.parameters, scene.camera);
             this.picture = picture;
             const reference = picture.unpacked ??= picture.reference ? await loadReference(this.folder, picture.reference) : null;
-            const changed = {...picture, scene: await solver?.changed(picture.scene) ?? scene};
+            const changed = {...picture, scene: await solver?.changed(scene) ?? scene};
             const state = await this.prepare(changed, editor.sources), {rendering} = state, states = [state];
             if (turn === this.turn && controls.compared.checked && before) states.push(await this.prepare(before, live.sources));
             try {

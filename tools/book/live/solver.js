@@ -3,7 +3,7 @@
 "use strict";
 
 live.Solver = (() => {
-    const {element} = live, {loadData, unpackWords} = live.loading;
+    const {element} = live;
     const SAMPLES = 16, STEPS = 5;
     const LARGEST_STEP = 1.5, LOW = 1e-3;  // of the logarithm of an albedo, and of the albedo, as in tools/lesson/solve.py
 
@@ -37,9 +37,8 @@ live.Solver = (() => {
         }
 
         // The scene with the reader's colours. The first time it offers its matte materials.
-        async changed(name) {
-            const scene = await loadData(this.frame.picture.folder, name);
-            scene.words ??= await unpackWords(scene.packed);
+        async changed(scene) {
+            scene.words ??= await live.loading.unpackWords(scene.packed);
             if (scene !== this.scene) this.offer(scene);
             if (!this.isChanged) return scene;
             const words = scene.words.slice(), floats = new Float32Array(words.buffer);
