@@ -61,16 +61,16 @@ class FactsOfMistakesTest(unittest.TestCase):
         facts, sights = {}, {}
         for name, experiment in experiments_of(chapter).items():
             own, count = known_sights(KNOWLEDGE_OF[chapter]["experiments"][name]), len(experiment.points)
-            brightest = max(sight.mean for sight in own)
+            brightest = max(abs(sight.mean) for sight in own)
             shown, noise, rays = (
                 numbers(mistake.get(kind, {}).get(name, "")) or [1.0] * count for kind in ("shows", "noise", "rays")
             )
             if name not in mistake["shows"]:
-                shown = [float(sight.mean > DARK * brightest) for sight in own]
+                shown = [float(abs(sight.mean) > DARK * brightest) for sight in own]
             sights[name] = [
                 replace(
                     sight,
-                    mean=value * (sight.mean if sight.mean > DARK * brightest else brightest),
+                    mean=value * (sight.mean if abs(sight.mean) > DARK * brightest else brightest),
                     noise=sight.noise * noisier,
                     rays=sight.rays * more,
                 )

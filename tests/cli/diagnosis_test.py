@@ -30,6 +30,13 @@ class FactsTest(unittest.TestCase):
         self.assertFalse(vague.is_surely_right, "too vague to be called right")
         self.assertEqual(right_ones({"angle": vague}), [])
 
+    def test_a_derivative_may_be_negative(self):
+        expected = [-0.4, 0.5, 0.0]
+        self.assertTrue(seen([1.0, 1.0, 0.0], expected=expected).is_surely_right)
+        self.assertIn("at 20: 0.50 ±", seen([0.5, 1.0, 0.0], expected=expected).sentence)
+        self.assertIn("at 20: -1.", seen([-1.0, 1.0, 0.0], expected=expected).sentence)
+        self.assertIn("light where none should be", seen([1.0, 1.0, 0.5], expected=expected).sentence)
+
     def test_a_constant_factor_is_told_with_its_interval_and_its_name(self):
         self.assertEqual(
             seen([3.1416] * 4).sentence,

@@ -170,7 +170,7 @@ class ExpectedTest(unittest.TestCase):
             (chapter, name)
             for chapter, known in self.known().items()
             for name, seen in known["experiments"].items()
-            if any(0 < mean <= DARK * max(seen["mean"]) for mean in seen["mean"])
+            if any(0 < abs(mean) <= DARK * max(map(abs, seen["mean"])) for mean in seen["mean"])
         }
         self.assertEqual(dim, {(11, "frosted_ray")}, "whose lobe is dark beside the refracted ray")
 

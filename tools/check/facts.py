@@ -103,13 +103,14 @@ class Fact:
 
 def readings(points, sights, expected):
     """Compares the Sights of a shader with those of the chapter's own."""
-    brightest = max(sight.mean for sight in expected)
+    brightest = max(abs(sight.mean) for sight in expected)
     found = []
     for point, now, right in zip(points, sights, expected):
-        is_dark = right.mean <= DARK * brightest
-        scale = brightest if is_dark else right.mean
+        is_dark = abs(right.mean) <= DARK * brightest
+        scale = brightest if is_dark else right.mean  # negative where more of a parameter means less light
         value = now.mean / scale
-        found.append(Reading(point.at, value, math.hypot(now.error, 0.0 if is_dark else value * right.error) / scale, is_dark))
+        error = math.hypot(now.error, 0.0 if is_dark else value * right.error) / abs(scale)
+        found.append(Reading(point.at, value, error, is_dark))
     return found
 
 

@@ -35,11 +35,11 @@ live.facts = (() => {
     // right.
     function fact({subject, varies, points}, sights, rules) {
         const {SURE, TOLERANCE, CLOSE, INTERVAL, DARK, FEW_PARTS, CONSTANTS} = rules;
-        const brightest = Math.max(...points.map(point => point.mean));
+        const brightest = Math.max(...points.map(point => Math.abs(point.mean)));
         const readings = points.map((point, i) => {
-            const isDark = point.mean <= DARK * brightest, scale = isDark ? brightest : point.mean;
+            const isDark = Math.abs(point.mean) <= DARK * brightest, scale = isDark ? brightest : point.mean;
             const value = sights[i].mean / scale;
-            const error = Math.hypot(sights[i].error, isDark ? 0 : value * point.error) / scale;
+            const error = Math.hypot(sights[i].error, isDark ? 0 : value * point.error) / Math.abs(scale);
             const off = Math.abs(value - (isDark ? 0 : 1));
             const isRight = off <= SURE * error + TOLERANCE;
             return {at: point.at, value, error, isDark, isRight, isSurelyRight: isRight && off + INTERVAL * error <= CLOSE};
