@@ -43,15 +43,33 @@ FilterPixel get_filter_pixel(ivec2 p) {
     return result;
 }
 
-// The variance of a pixel comes from a single difference, and is as uncertain as that. Neighbours help.
+// The 5 x 5 pixels around p that tell its variance.
+const int NEIGHBOUR_COUNT = 25;
+ivec2 get_neighbour(ivec2 p, int i) { return p + ivec2(i % 5, i / 5) - 2; }
+
+// How bright most of them are: the geometric mean, which a few bright spots hardly change, of values that are not quite 0.
+vec3 get_typical_brightness(ivec2 p, int half_index) {
+    vec3 mean = vec3(0.0), logarithm = vec3(0.0);
+    for (int i = 0; i < NEIGHBOUR_COUNT; ++i) mean += abs(get_mean(get_neighbour(p, i), half_index)) / float(NEIGHBOUR_COUNT);
+    vec3 least = 1e-3 * mean + 1e-30;
+    for (int i = 0; i < NEIGHBOUR_COUNT; ++i)
+        logarithm += log(abs(get_mean(get_neighbour(p, i), half_index)) + least) / float(NEIGHBOUR_COUNT);
+    return exp(logarithm);
+}
+
+// The variance of a pixel comes from a single difference, and is as uncertain as that. Neighbours help, unless one is the image of a
+// lamp in a dark surface: its variance would excuse any difference around it, and the lamp became a blot. So nothing counts with more
+// variance than it would have if it were 400 times as bright as what surrounds it.
 FilterPixel smooth_variance(ivec2 p) {
-    const int RADIUS_OF_VARIANCE = 2;
     FilterPixel result = get_filter_pixel(p);
     for (int half_index = 0; half_index < 2; ++half_index) {
-        vec3 sum = vec3(0.0);
-        for (int y = -RADIUS_OF_VARIANCE; y <= RADIUS_OF_VARIANCE; ++y)
-            for (int x = -RADIUS_OF_VARIANCE; x <= RADIUS_OF_VARIANCE; ++x) sum += get_variance(p + ivec2(x, y), half_index);
-        result.variance[half_index] = sum / float((2 * RADIUS_OF_VARIANCE + 1) * (2 * RADIUS_OF_VARIANCE + 1));
+        vec3 limit = 400.0 * get_typical_brightness(p, half_index), sum = vec3(0.0);
+        for (int i = 0; i < NEIGHBOUR_COUNT; ++i) {
+            ivec2 q = get_neighbour(p, i);
+            vec3 excess = get_mean(q, half_index) / limit;
+            sum += get_variance(q, half_index) / max(excess * excess, 1.0);
+        }
+        result.variance[half_index] = sum / float(NEIGHBOUR_COUNT);
     }
     return result;
 }

@@ -23,7 +23,9 @@ class LiveFactsTest(unittest.TestCase):
         for _ in range(1000):
             count = int(random.integers(1, 5))
             points = [Point({}, f"place {i}") for i in range(count)]
-            expected = [Sight(mean, 1e-3 * abs(mean), 0, 0, 1) for mean in map(float, random.choice([0.3, -0.5, 2.0, 1e-5], count))]
+            expected = [
+                Sight(mean, 1e-3 * abs(mean), 0, 0, 1) for mean in map(float, random.choice([0.3, -0.5, 2.0, 1e-5], count))
+            ]
             factors = random.choice(FACTORS, count) if random.integers(2) else [random.choice(FACTORS)] * count
             errors = random.choice([1e-3, 0.02], count)
             # Off by a few errors, so that the limits matter.

@@ -65,6 +65,20 @@ TEST_P(ConsistentFilters, KeepEdgesThatStandOutOfTheNoise) {
     EXPECT_GE(variance / 0.005, 0.002);
 }
 
+// The image of a small lamp covers only some of the samples of a pixel, so its variance is large. That does not make it light of its
+// dark neighbours.
+TEST_P(ConsistentFilters, KeepBrightSpotsToThemselves) {
+    MadeFilms films(32);
+    fill(
+        films, [](uint32_t, uint32_t) { return vec3(0.01f); }, 0.002f);
+    films.set(16, 16, {vec3(60), vec3(60)}, 5000);
+    const Image filtered = films.filter(GetParam()).mean();
+    for (size_t i = 0; i < filtered.pixels.size(); ++i) {
+        if (i / 3 == 16 * 32 + 16) continue;
+        ASSERT_LE(filtered.pixels[i], 0.02f) << "number " << i;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Filters, ConsistentFilters, testing::Values("a_trous", "nl_means"),
                          [](const auto& info) { return std::string(info.param); });
 
