@@ -60,8 +60,8 @@ FilterPixel filter_pixel(ivec2 p) {
     for (int half_index = 0; half_index < 2; ++half_index) {
         vec3 sum = vec3(0.0), variance = vec3(0.0);
         float weights = 0.0;
-        for (int y = -RADIUS; y <= RADIUS; ++y)
-            for (int x = -RADIUS; x <= RADIUS; ++x) {
+        for (int y = -RADIUS; y <= not_unrolled(RADIUS); ++y)
+            for (int x = -RADIUS; x <= not_unrolled(RADIUS); ++x) {
                 ivec2 q = p + STEP * ivec2(x, y);
                 if (!is_inside(q) || !is_valid(q) && q != p) continue;
                 float weight = get_weight(p, q, half_index);

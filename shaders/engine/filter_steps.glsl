@@ -28,6 +28,10 @@ vec3 get_normal(ivec2 p) { return 2.0 * get_mean_of(get_film_pixel(FILM_NORMALS,
 // Samples that were infinite or not a number add 0: such a pixel is too dark, and must not darken others.
 bool is_valid(ivec2 p) { return get_film_pixel(FILM_NOW, get_pixel_index(p)).invalid_count == 0u; }
 
+// The same number, since no picture is 2^31 pixels wide. But compilers do not know it: Mesa's for CPUs would unroll the loops over
+// neighbours, and compile for seven seconds instead of one.
+int not_unrolled(int count) { return count + int(filtering.image_size.x >> 31); }
+
 // FilterPixel get_filter_input(uint pixel_index), FilmPixel get_picture(uint pixel_index, FilterPixel filtered)
 #include "filter_input.glsl"
 // FilterPixel filter_pixel(ivec2 p)
@@ -43,16 +47,17 @@ FilterPixel get_filter_pixel(ivec2 p) {
     return result;
 }
 
-// The 5 x 5 pixels around p that tell its variance.
-const int NEIGHBOUR_COUNT = 25;
+// The pixels around p that tell its variance.
+const int NEIGHBOUR_COUNT = 5 * 5;
 ivec2 get_neighbour(ivec2 p, int i) { return p + ivec2(i % 5, i / 5) - 2; }
 
 // How bright most of them are: the geometric mean, which a few bright spots hardly change, of values that are not quite 0.
 vec3 get_typical_brightness(ivec2 p, int half_index) {
     vec3 mean = vec3(0.0), logarithm = vec3(0.0);
-    for (int i = 0; i < NEIGHBOUR_COUNT; ++i) mean += abs(get_mean(get_neighbour(p, i), half_index)) / float(NEIGHBOUR_COUNT);
+    for (int i = 0; i < not_unrolled(NEIGHBOUR_COUNT); ++i)
+        mean += abs(get_mean(get_neighbour(p, i), half_index)) / float(NEIGHBOUR_COUNT);
     vec3 least = 1e-3 * mean + 1e-30;
-    for (int i = 0; i < NEIGHBOUR_COUNT; ++i)
+    for (int i = 0; i < not_unrolled(NEIGHBOUR_COUNT); ++i)
         logarithm += log(abs(get_mean(get_neighbour(p, i), half_index)) + least) / float(NEIGHBOUR_COUNT);
     return exp(logarithm);
 }
@@ -64,7 +69,7 @@ FilterPixel smooth_variance(ivec2 p) {
     FilterPixel result = get_filter_pixel(p);
     for (int half_index = 0; half_index < 2; ++half_index) {
         vec3 limit = 400.0 * get_typical_brightness(p, half_index), sum = vec3(0.0);
-        for (int i = 0; i < NEIGHBOUR_COUNT; ++i) {
+        for (int i = 0; i < not_unrolled(NEIGHBOUR_COUNT); ++i) {
             ivec2 q = get_neighbour(p, i);
             vec3 excess = get_mean(q, half_index) / limit;
             sum += get_variance(q, half_index) / max(excess * excess, 1.0);

@@ -65,8 +65,8 @@ TEST_P(ConsistentFilters, KeepEdgesThatStandOutOfTheNoise) {
     EXPECT_GE(variance / 0.005, 0.002);
 }
 
-// The image of a small lamp covers only some of the samples of a pixel, so its variance is large. That does not make it light of its
-// dark neighbours.
+// The image of a small lamp covers only some of the samples of a pixel, so its variance is large. That does not make it light of
+// its dark neighbours.
 TEST_P(ConsistentFilters, KeepBrightSpotsToThemselves) {
     MadeFilms films(32);
     fill(
