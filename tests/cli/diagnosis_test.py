@@ -1,12 +1,14 @@
 """What ./lab check finds out about an incorrect shader: experiments, facts, and the names they leave."""
 
 import unittest
+from dataclasses import replace
 from pathlib import Path
 from unittest import mock
 
 import tools_path  # noqa: F401  (first: it finds the others)
 from check import diagnosis, grading
-from check.diagnosis import right_ones
+from check.diagnosis import reason, right_ones
+from check.expected import expected_file
 from check.experiments import Experiment, Point, Sight, experiment_files, experiments_of
 from check.facts import fact
 from check.findings import LONGEST, findings, shortened
@@ -14,6 +16,7 @@ from check.grading import RUNS
 from check.submission import Submission
 from check.words import MARGIN
 from course.mistakes import catalogue
+from project import UserError, read_json
 
 from shown_facts import seen, sight
 
@@ -36,6 +39,25 @@ class FactsTest(unittest.TestCase):
         self.assertIn("at 20: 0.50 ±", seen([0.5, 1.0, 0.0], expected=expected).sentence)
         self.assertIn("at 20: -1.", seen([-1.0, 1.0, 0.0], expected=expected).sentence)
         self.assertIn("light where none should be", seen([1.0, 1.0, 0.5], expected=expected).sentence)
+
+    def test_what_cannot_be_rendered_is_tried_again_at_leisure_and_then_decides(self):
+        limits, known = [], read_json(expected_file(3))["experiments"]
+
+        def fail(chapter, points, settings, *_, **__):
+            limits.append(settings["time_limit"])
+            raise UserError("ended")
+
+        with mock.patch.object(diagnosis, "pictures", fail):
+            facts, sights = diagnosis.observe(
+                3, {"time_limit": 99.0, "first_seed": 0, "is_quiet": True}, known, diagnosis.is_deciding
+            )
+        self.assertEqual(limits.count(99.0), 1, "one is enough")
+        self.assertTrue(reason(facts, sights, {"experiments": known, "mistakes": {}}, True)["is_beyond_doubt"])
+
+    def test_a_single_invalid_sample_decides(self):
+        of, right = seen([1.0]).experiment, sight(0.5)
+        self.assertFalse(fact(of, [right], [right]).is_beyond_doubt)
+        self.assertTrue(fact(of, [replace(right, invalid=1)], [right]).is_beyond_doubt)
 
     def test_a_constant_factor_is_told_with_its_interval_and_its_name(self):
         self.assertEqual(

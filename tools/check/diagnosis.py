@@ -54,13 +54,13 @@ def from_both_ends(items):
 
 def observe(chapter, settings, expected, chosen=is_called_for, seed=None):
     """Name -> Fact and name -> list of Sight, for the experiments of a chapter, with `seed` or else with what follows from --seed."""
-    facts, sights, settings = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
+    facts, sights, hasty = {}, {}, settings | {"time_limit": min(settings["time_limit"], PATIENCE)}
     seed = seed or FIRST_SEED + settings["first_seed"] - first_seed(0)
     experiments = experiments_of(chapter)
     waiting = [name for name in experiments if name in expected]
     count, started = len(waiting), time.monotonic()
 
-    def look(name):
+    def look(name, settings=hasty):
         try:
             return look_at(
                 chapter, experiments[name].points, settings, seed, batch, repeats_of(chapter), known_sights(expected[name])
@@ -68,20 +68,28 @@ def observe(chapter, settings, expected, chosen=is_called_for, seed=None):
         except UserError as error:  # for example an endless loop that only this scene triggers
             return error
 
+    def note(name, found):
+        experiment = experiments[name]
+        if isinstance(found, UserError):
+            facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {found}")
+        else:
+            sights[name] = found
+            facts[name] = fact(experiment, found, known_sights(expected[name]))
+
     with Batch() as batch:
         while waiting:  # at the same time those whose conditions are known
             ready = [name for name in waiting if not set(experiments[name].when) & set(waiting)]
             names = from_both_ends([name for name in ready if chosen(experiments[name], facts)])
             waiting = [name for name in waiting if name not in ready]
             for left, (name, found) in zip(reversed(range(len(names))), zip(names, batch.map(look, names))):
-                experiment = experiments[name]
                 if not settings["is_quiet"]:
                     show_progress(f"{settings['what']}experiments", count - len(waiting) - left, count, started)
-                if isinstance(found, UserError):
-                    facts[name] = Fact(experiment, [], f"{experiment.subject}: cannot be rendered: {found}")
-                else:
-                    sights[name] = found
-                    facts[name] = fact(experiment, found, known_sights(expected[name]))
+                note(name, found)
+        if chosen is is_deciding:  # a verdict may depend on it: an endless loop, or just a busy machine?
+            for name in [name for name, seen in facts.items() if not seen.readings]:
+                note(name, look(name, settings))
+                if not facts[name].readings:
+                    break
     return tuple({name: those[name] for name in experiments if name in those} for those in (facts, sights))
 
 
@@ -174,7 +182,7 @@ def reason(facts, sights, known, is_correct):
         "right": right_ones(facts),
         "wrong": wrong,
         "fits": bool(fitting),
-        "is_beyond_doubt": any(reading.is_beyond_doubt for seen in facts.values() for reading in seen.readings),
+        "is_beyond_doubt": any(seen.is_beyond_doubt for seen in facts.values()),
         "too_noisy": [noisiest, round(noise, 2)] if noise else None,
         "mistakes": [
             {"name": name} | {key: known["mistakes"][name].get(key) for key in ("hint", "slide", "section")} for name in names

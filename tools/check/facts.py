@@ -100,6 +100,11 @@ class Fact:
     def is_surely_right(self):
         return self.is_right and all(reading.is_surely_right for reading in self.readings)
 
+    @property
+    def is_beyond_doubt(self):
+        """Whether a verdict may rely on it that the shader is wrong."""
+        return not self.readings or self.invalid > 0 or any(reading.is_beyond_doubt for reading in self.readings)
+
 
 def readings(points, sights, expected):
     """Compares the Sights of a shader with those of the chapter's own."""
