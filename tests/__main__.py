@@ -7,15 +7,16 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
-from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.append(str(ROOT / "tools"))
 from cited_tests import PROGRAMS, TEST, tests_of_exercise  # noqa: E402  (found by the line above)
+from kept_results import ENDED, KeptResults, outcome  # noqa: E402
 from project import CHAPTERS, original, run_tool, text_of  # noqa: E402
 from test_report import list_tests  # noqa: E402
 
 BUILD = ROOT / "build"
+KEPT = BUILD / "test_results.jsonl"
 WRITTEN = [
     (kind, file.stem, *names)
     for kind in (*PROGRAMS, "viewer")
@@ -23,6 +24,7 @@ WRITTEN = [
     for names in TEST.findall(text_of(file))
 ]  # all tests in C++
 EVERYTHING = ["all", "only_in_all"]
+GOES_ON = "--all" in sys.argv
 
 
 def fail(message):
@@ -31,10 +33,11 @@ def fail(message):
 
 def choose(words):
     """The targets to be built, and a function that then runs the chosen tests and returns whether one failed."""
-    targets, choice, chapter, name, more, words = ["all"], ["-LE", "^all$"], None, "", [], iter(words)
+    targets, choice, chapter, name, more, run = ["all"], ["-LE", "^all$"], None, "", [], run_ctest
+    is_status, words = "--status" in words, iter(word for word in words if word != "--status")
     for word in words:
         if word == "--all":
-            targets, choice = EVERYTHING, []
+            targets, choice, run = EVERYTHING, [], partial(run_all, is_status=is_status)
         elif word == "--quick":
             targets, choice = ["quick_tests"], ["-L", "^quick$"]
         elif word.startswith("-R"):
@@ -53,8 +56,10 @@ def choose(words):
         name = name or rf"[./]({'|'.join(suites)})\."
         more += ["-E", f"/chapter_({'|'.join(others)})(_all)?$"]
     if name:
-        targets, choice = targets_of_tests(name), ["-R", name]
-    return targets, partial(run_ctest, [*choice, *more])
+        targets, choice, run = targets_of_tests(name), ["-R", name], run_ctest
+    if is_status and run is run_ctest:
+        fail("--status goes with --all")
+    return targets, partial(run, [*choice, *more])
 
 
 def targets_of_tests(name):
@@ -89,35 +94,41 @@ def exercise(chapter, suites, others):
 
 
 def run_ctest(arguments):
-    results = BUILD / "tests.xml"
-    results.unlink(missing_ok=True)
+    """Whether a test has failed, or none has passed."""
+    kept, ended = KeptResults(KEPT), {}
     # One more than the number of cores, since tests wait for files and programs; more than a few would only compete for a GPU.
     jobs = min(len(os.sched_getaffinity(0)) + 1, 4)
-    code = subprocess.run(
-        [
-            "ctest",
-            "--parallel",
-            str(jobs),
-            "--test-dir",
-            BUILD,
-            "--output-on-failure",
-            "--no-tests=error",
-            "--output-junit",
-            results,
-            *arguments,
-        ]
-    ).returncode
-    cases = list(ElementTree.parse(results).iter("testcase")) if results.exists() else []
-    passed = sum(case.get("status") == "run" for case in cases)
-    skipped = sum(
-        case.get("status") == "disabled" or any(why.get("message").startswith("SKIP_") for why in case.iter("skipped"))
-        for case in cases
-    )
+    command = ["ctest", "--parallel", str(jobs), "--test-dir", BUILD, "--output-on-failure", "--no-tests=error", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", errors="backslashreplace") as process:
+        for line in process.stdout:
+            print(line, end="", flush=True)
+            if found := ENDED.match(line):
+                test, words, seconds = found[1], found[2], float(found[3])
+                ended[test] = (outcome(words), seconds)
+                if "LAB_TEST_COPY" not in os.environ:  # whose results are not those of the sources
+                    kept.note(test, *ended[test])
     print("slowest:")
-    for case in sorted(cases, key=lambda case: -float(case.get("time")))[:5]:
-        print(f"  {float(case.get('time')):5.1f} s  {case.get('name')}")
-    print(f"{passed} passed, {len(cases) - passed - skipped} failed" + (f", {skipped} skipped" if skipped else ""))
-    return code != 0 or passed == 0
+    for test, (_, seconds) in sorted(ended.items(), key=lambda item: -item[1][1])[:5]:
+        print(f"  {seconds:5.1f} s  {test}")
+    passed, failed, skipped = (sum(result == which for result, _ in ended.values()) for which in ("green", "red", "skipped"))
+    print(f"{passed} passed, {failed} failed" + (f", {skipped} skipped" if skipped else ""))
+    return process.returncode != 0 or passed == 0
+
+
+def run_all(arguments, is_status):
+    """Runs those of all tests that are not green, or tells how they all stand."""
+    listing = subprocess.run(["ctest", "--test-dir", BUILD, "-N", *arguments], capture_output=True, encoding="utf-8").stdout
+    numbers = {name: number for number, name in re.findall(r"(?m)^ *Test +#(\d+): (\S+)$", listing)}
+    kept = KeptResults(KEPT)
+    if not numbers:  # as ctest explains
+        return run_ctest(arguments)
+    if is_status:
+        return kept.tell(numbers)
+    if "-I" in arguments:  # now in the numbers
+        del arguments[arguments.index("-I") :][:2]
+    waiting = [numbers[test] for test in numbers if kept.state(test) != "green"]
+    print(f"{len(numbers) - len(waiting)} of {len(numbers)} tests are green since the last change of what they read")
+    return bool(waiting) and run_ctest([*arguments, "-I", ",".join(["0,0,0", *waiting])])
 
 
 def main():

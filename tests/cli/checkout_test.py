@@ -54,7 +54,7 @@ class WhatIsBuilt(ProgramTest):
         for name in (
             "lab",
             *(f"tools/{name}.py" for name in ("__main__", "project", "lesson/chapters")),
-            *(f"tests/{name}.py" for name in ("__main__", "cited_tests", "test_report")),
+            *(f"tests/{name}.py" for name in ("__main__", "cited_tests", "kept_results", "test_report")),
         ):
             shutil.copy(PROJECT / name, self.folder / "tree" / name)
         for name, script in (("dpkg-query", INSTALLED), ("cmake", NOTING), ("python3", CHOOSING), ("ctest", NOTING)):
@@ -113,7 +113,7 @@ class WhatIsBuilt(ProgramTest):
         ):
             noted = self.noted("test", *arguments, code=1)
             self.assertRegex(noted, rf"(?m)^cmake --build .* --target {targets}$")
-            self.assertRegex(noted, rf"(?m)^ctest .*tests\.xml{choice}$")
+            self.assertRegex(noted, rf"(?m)^ctest .* --no-tests=error{choice}$")
 
     def test_the_tests_of_a_copy_are_those_of_its_originals_exercise(self):
         """Only the files that have them are built, and only their tests run."""
@@ -136,28 +136,63 @@ class WhatIsBuilt(ProgramTest):
     def test_the_summary_counts_what_ran(self):
         """A run in which nothing runs has failed."""
         cases = {
-            "a.Passes": (1, "run", ""),
-            "a.IsSlow": (22.5, "run", ""),
-            "a.Fails": (3, "fail", "<failure/>"),
-            "a.IsOff": (0, "disabled", ""),
-            "a.NeedsXvfb": (0, "notrun", '<skipped message="SKIP_RETURN_CODE=77"/>'),
-            "a.IsMissing": (0, "notrun", '<skipped message="Unable to find executable"/>'),
+            "a.Passes": "   Passed    1.00 sec",
+            "a.IsSlow": "   Passed   22.50 sec",
+            "a.Fails": "***Failed    3.00 sec",
+            "a.IsOff": "***Not Run (Disabled)   0.00 sec",
+            "a.NeedsXvfb": "***Skipped   0.00 sec",
+            "a.IsMissing": "***Not Run   0.00 sec",
         }
         for names, code_of_ctest, code, last in (
             (cases, 8, 1, "2 passed, 2 failed, 2 skipped"),
             (["a.Passes", "a.IsSlow"], 0, 0, "2 passed, 0 failed"),
             (["a.IsOff"], 0, 1, "0 passed, 0 failed, 1 skipped"),
         ):
-            report = "".join(
-                '<testcase name="{}" time="{}" status="{}">{}</testcase>'.format(name, *cases[name]) for name in names
-            )
-            self.write("report.xml", f"<testsuite>{report}</testsuite>")
-            self.write(
-                "tree/bin/ctest",
-                f"#!/bin/sh\ncp {self.folder}/report.xml {self.folder}/tree/build/tests.xml\nexit {code_of_ctest}\n",
-            )
+            lines = "\n".join(f"1/{len(names)} Test  #1: {name} ......{cases[name]}" for name in names)
+            self.write("tree/bin/ctest", f"#!/bin/sh\ncat <<'END'\n{lines}\nEND\nexit {code_of_ctest}\n")
             path = f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"
             actual, out, err = self.run_program("test", program=self.folder / "tree/lab", environment={"PATH": path})
             self.assertEqual((actual, out.splitlines()[-1]), (code, last), err)
             if code == 0:
                 self.assertIn("slowest:\n   22.5 s  a.IsSlow\n    1.0 s  a.Passes\n", out)
+
+    def test_all_goes_on_with_what_is_not_green_and_tells_how_things_stand(self):
+        """Each test runs once, until what it reads changes: mistakes read no pages, and a command may read anything."""
+        self.write(
+            "tree/bin/ctest",
+            f"""#!/bin/sh
+if [ "$3" = -N ]; then printf '  Test %s\\n' '#1: unit.A.B' ' #2: mistakes.c' ' #3: cli.D' '#14: unit.E.F'; exit; fi
+for last; do :; done
+echo "$last" >> {self.folder}/asked
+case $last in *,1*) echo '1/4 Test  #1: unit.A.B ...   Passed    1.00 sec' ;; esac
+case $last in *,2*) echo '2/4 Test  #2: mistakes.c ...   Passed    1.00 sec' ;; esac
+case $last in *,3*) echo '3/4 Test  #3: cli.D ...   Passed    7200.00 sec' ;; esac
+case $last in *,14*) echo '4/4 Test #14: unit.E.F ...***Failed    1.00 sec'; exit 8 ;; esac
+""",
+        )
+        environment = {"PATH": f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"}
+        (self.folder / "tree/bin/ctest").chmod(0o755)
+
+        def test(*arguments, code):
+            actual, out, err = self.run_program("test", *arguments, program=self.folder / "tree/lab", environment=environment)
+            self.assertEqual(actual, code, out + err)
+            return out
+
+        def asked():
+            return (self.folder / "asked").read_text().split()[-1]
+
+        self.write("tree/.gitignore", "build/\n")
+        subprocess.run(["git", "init", "-q"], cwd=self.folder / "tree", check=True)
+        for folder in ("docs", "common"):
+            (self.folder / "tree" / folder).mkdir()
+        self.assertIn("4 never run", test("--all", "--status", code=0))
+        test("--all", code=1)
+        self.assertEqual(asked(), "0,0,0,1,2,3,14")
+        test("--all", code=1)
+        self.assertEqual(asked(), "0,0,0,14", "the red one")
+        self.assertRegex(test("--all", "--status", code=0), r"3 green, 1 red\n  red: unit.E.F\n.* took 2.0 hours")
+        self.write("tree/docs/new.md", "a page")
+        self.assertIn("2 green, 1 old, 1 red", test("--all", "--status", code=0))
+        self.write("tree/common/new.h", "// a header")
+        self.assertIn("4 old", test("--all", "--status", code=0))
+        self.assertIn("--status goes with --all", self.run_program("test", "--status", program=self.folder / "tree/lab")[2])
