@@ -162,7 +162,9 @@ TEST(Filters, KeepBlackAlbedosFinite) {
             films.pixel(FILM_ALBEDO, x, y) = film_pixel(MadeFilms::samples, vec3(x % 2 == 0 ? 0.0f : 0.8f, 0.8f, 0.8f),
                                                         vec3(x % 2 == 0 ? 0.0f : 0.8f, 0.8f, 0.8f));
     for (const char* filter : {"bilateral", "a_trous", "nl_means"}) {
-        const Image filtered = films.filter(filter).mean();
+        const FilmImage picture = films.filter(filter);
+        EXPECT_EQ(picture.invalid_samples(), 0) << filter;
+        const Image filtered = picture.mean();
         for (size_t i = 0; i < filtered.pixels.size(); ++i) {
             const bool is_black = i % 3 == 0 && i / 3 % 2 == 0;  // red, in even columns
             ASSERT_GE(filtered.pixels[i], 0) << filter << ", number " << i;
