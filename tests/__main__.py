@@ -93,9 +93,9 @@ def exercise(chapter, suites, others):
     return targets or fail(f"no test is named {' or '.join(suites)}, as the page of {chapter} says"), run
 
 
-def run_ctest(arguments):
+def run_ctest(arguments, kept=None):
     """Whether a test has failed, or none has passed."""
-    kept, ended = KeptResults(KEPT), {}
+    kept, ended = kept or KeptResults(KEPT), {}
     # One more than the number of cores, since tests wait for files and programs; more than a few would only compete for a GPU.
     jobs = min(len(os.sched_getaffinity(0)) + 1, 4)
     command = ["ctest", "--parallel", str(jobs), "--test-dir", BUILD, "--output-on-failure", "--no-tests=error", *arguments]
@@ -128,7 +128,7 @@ def run_all(arguments, is_status):
         del arguments[arguments.index("-I") :][:2]
     waiting = [numbers[test] for test in numbers if kept.state(test) != "green"]
     print(f"{len(numbers) - len(waiting)} of {len(numbers)} tests are green since the last change of what they read")
-    return bool(waiting) and run_ctest([*arguments, "-I", ",".join(["0,0,0", *waiting])])
+    return bool(waiting) and run_ctest([*arguments, "-I", ",".join(["0,0,0", *waiting])], kept)
 
 
 def main():

@@ -40,9 +40,9 @@ class KeptResults:
         kind = "mistakes" if test.startswith("mistakes.") else "cpp" if IN_CPP.match(test) else "other"
         return self.digests[kind]
 
-    def note(self, test, outcome, seconds):
+    def note(self, test, result, seconds):
         """Keeps a result at once: ctest may be interrupted."""
-        row = {"test": test, "result": outcome, "seconds": seconds, "commit": self.commit, "sources": self.sources(test)}
+        row = {"test": test, "result": result, "seconds": seconds, "commit": self.commit, "sources": self.sources(test)}
         self.results[test] = row
         with self.file.open("a", encoding="utf-8") as file:
             file.write(json.dumps(row) + "\n")
@@ -59,7 +59,8 @@ class KeptResults:
             states.setdefault(self.state(test), []).append(test)
         print(", ".join(f"{len(those)} {state}" for state, those in sorted(states.items())))
         for state in ("red", "skipped"):
-            print(*(f"  {state}: {test}" for test in states.get(state, [])), sep="\n", end="\n" if state in states else "")
+            for test in states.get(state, []):
+                print(f"  {state}: {test}")
         known = [self.results[test]["seconds"] for test in tests if test in self.results]
         print(f"the last runs of {len(known)} of {len(tests)} took {sum(known) / 3600:.1f} hours, one after another")
 

@@ -53,6 +53,8 @@ class FactsTest(unittest.TestCase):
             )
         self.assertEqual(limits.count(99.0), 1, "one is enough")
         self.assertTrue(reason(facts, sights, {"experiments": known, "mistakes": {}}, True)["is_beyond_doubt"])
+        # Beside wrong pictures nothing is tried again, and a busy machine may be the reason.
+        self.assertFalse(reason(facts, sights, {"experiments": known, "mistakes": {}}, False)["is_beyond_doubt"])
 
     def test_a_single_invalid_sample_decides(self):
         of, right = seen([1.0]).experiment, sight(0.5)

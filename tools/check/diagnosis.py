@@ -182,7 +182,8 @@ def reason(facts, sights, known, is_correct):
         "right": right_ones(facts),
         "wrong": wrong,
         "fits": bool(fitting),
-        "is_beyond_doubt": any(seen.is_beyond_doubt for seen in facts.values()),
+        # What cannot be rendered was tried again only beside correct pictures; elsewhere the machine may just have been busy.
+        "is_beyond_doubt": any(seen.is_beyond_doubt or is_correct and not seen.readings for seen in facts.values()),
         "too_noisy": [noisiest, round(noise, 2)] if noise else None,
         "mistakes": [
             {"name": name} | {key: known["mistakes"][name].get(key) for key in ("hint", "slide", "section")} for name in names

@@ -103,7 +103,7 @@ class Fact:
     @property
     def is_beyond_doubt(self):
         """Whether a verdict may rely on it that the shader is wrong."""
-        return not self.readings or self.invalid > 0 or any(reading.is_beyond_doubt for reading in self.readings)
+        return self.invalid > 0 or any(reading.is_beyond_doubt for reading in self.readings)
 
 
 def readings(points, sights, expected):
