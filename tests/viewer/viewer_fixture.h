@@ -150,12 +150,20 @@ class ViewerTest : public testing::Test {
         run_frames(2);
     }
 
-    // Clicks a control until that has had its effect: controls move as long as lines above them change.
+    // Clicks a control once it has kept its place for some frames: controls move as long as lines above them change, and a click
+    // beside it may open a list that hides it, and choose another scene there.
+    void click_at_rest(const std::function<vec2()>& place) {
+        vec2 at = place();
+        wait_until("at rest", [&, frames = 0]() mutable {
+            frames = place() == at ? frames + 1 : 0;
+            at = place();
+            return frames > 5;
+        });
+        click(at.x, at.y);
+    }
+
     void click_until(const std::function<vec2()>& place, const std::function<bool()>& is_done) {
-        for (int attempt = 0; attempt < 5 && !is_done(); ++attempt) {
-            const vec2 at = place();
-            click(at.x, at.y);
-        }
+        for (int attempt = 0; attempt < 5 && !is_done(); ++attempt) click_at_rest(place);
         EXPECT_TRUE(is_done());
     }
 

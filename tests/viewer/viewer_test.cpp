@@ -133,7 +133,7 @@ TEST_F(ViewerTest, LobesAreShownAsOnWhereTheSceneHasThem) {
     finish_build();
     wait_until("samples", [&] { return session().samples() >= 1 && session().reduction() == 1; });
     EXPECT_TRUE(is_checked());
-    click(box().x, box().y);
+    click_at_rest(box);
     finish_build();
     EXPECT_FALSE(session().options().scene.specular) << "the scene's own lobes cannot be switched";
     EXPECT_TRUE(is_checked());
