@@ -223,4 +223,6 @@ class DecidingExperiments(unittest.TestCase):
             self.assertEqual(verdict("biased", look_closer, wrong=["angle"]), "biased")
             self.assertEqual(verdict("noisy", look_closer), "noisy")
         self.assertEqual(verdict("biased", look_closer, too_noisy=["light", 3.0]), "noisy")
-        self.assertEqual(verdict("correct", is_beyond_doubt=True, wrong=["angle"]), "biased")
+        for of_pictures in ("correct", "expensive", "noisy"):  # noise may hide a bias from the pictures
+            self.assertEqual(verdict(of_pictures, is_beyond_doubt=True, wrong=["angle"]), "biased")
+            self.assertEqual(verdict(of_pictures, wrong=["angle"]), of_pictures)

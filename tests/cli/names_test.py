@@ -75,18 +75,18 @@ class SimilarNamesTest(unittest.TestCase):
 
     def test_the_same_points_in_the_same_direction(self):
         self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 8.0], size=[2.0, 2.0, 2.0]), ["brighter"])
-        self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3), [], "half of the numbers differ")
-        self.assertEqual(self.names(angle=[1.0, 0.8, 0.3, 0.1], size=[1.0] * 3), ["darker"])
+        self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 0.1], size=[1.0] * 3), ["darker"], "two of three by other numbers")
+        self.assertEqual(self.names(angle=[1.0, 0.8, 0.6, 1.0], size=[1.0] * 3), [], "and none by the same")
 
-    def test_the_nearest_of_several(self):
+    def test_the_nearest_of_several_if_it_is_clearly_nearer(self):
         facts = {"angle": seen([1.0, 1.5, 2.5, 8.0]), "size": seen([2.0] * 3, name="size")}
-        self.assertEqual(
-            similar_to(facts, {"farther": {"shows": {"angle": "1 3 3 8", "size": "2 2 3"}}} | self.KNOWN), ["brighter"]
-        )
+        for sizes, names in (("1 1 1", ["brighter"]), ("2 2 2", [])):
+            other = {"other": {"shows": {"angle": "1 3 3 8", "size": sizes}}}
+            self.assertEqual(similar_to(facts, other | self.KNOWN), names)
 
     def test_none_if_the_nearest_explains_too_little(self):
         self.assertEqual(self.names(angle=[0.6, 0.5, 2.0, 1.0], size=[1.0] * 3), [], "one point of four")
-        self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 5.0], size=[1.6] * 3), [], "directions alone")
+        self.assertEqual(self.names(angle=[1.0, 1.5, 2.5, 1.0], size=[1.6] * 3), [], "directions alone, and not everywhere")
 
     def test_a_point_that_is_right_contradicts_a_small_difference_unless_it_is_too_vague(self):
         known = {"everywhere": {"shows": {"angle": "1.08 1.08 0.92 2"}}}

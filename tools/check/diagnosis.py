@@ -209,9 +209,11 @@ def diagnose(submission, settings, is_correct=False):
 
 def decide(submission, settings, result, pictures):
     """The verdict on a shader, from the pictures that judge() has returned and the diagnosis. A bias that no experiment shows needs a
-    closer look, and experiments may find a bias or noise where the pictures of a correct shader do not look."""
+    closer look, and experiments may find a bias or noise that the pictures do not: by where they look, or behind their noise."""
     found = result["diagnosis"]
     if result["verdict"] == "biased" and not found["wrong"] and not any(scene["invalid_samples"] for scene in result["scenes"]):
         look_closer(submission, settings, result, pictures)
-    if result["verdict"] == "correct":
-        result["verdict"] = "biased" if found["is_beyond_doubt"] else "noisy" if found["too_noisy"] else "correct"
+    if found["is_beyond_doubt"]:
+        result["verdict"] = "biased"
+    elif result["verdict"] == "correct" and found["too_noisy"]:
+        result["verdict"] = "noisy"

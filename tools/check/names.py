@@ -10,8 +10,9 @@ LOOSENESS, LEAST = 0.03, 0.01
 FITS, EXCLUDED = 3.5, 5.0  # standard errors: within the first it fits, beyond the second it is a different mistake
 MOST_DOUBTS = 1  # points between the two: more of them exclude it as well
 NOISE_LOOSENESS, RAYS_LOOSENESS = 0.25, 0.08  # of their logarithms
-# One that only may fit: how much of what is wrong it must explain, and how many points may contradict it.
-LEAST_LIKENESS, MOST_CONTRADICTIONS = 0.75, 3
+# One that only may fit: how much of what is wrong it must explain, and how much more than the second one. Chosen by the notebook's
+# variants, which have mistakes of the catalogue, and submissions, which have others.
+LEAST_LIKENESS, LEAST_LEAD = 0.5, 0.15
 
 
 def numbers(text):
@@ -88,9 +89,9 @@ def names_of(facts, sights, known, expected):
 
 
 def likeness(shown, facts):
-    """How much of what is wrong a mistake explains, from 0 to 1, and how many points contradict it: over the points that are wrong in
-    either, 1 where both are too bright or both too dark by the same, 1/2 where by something else, and 0 where they contradict each other.
-    A point that is too vague to tell whether it does counts as none."""
+    """How much of what is wrong a mistake explains, from 0 to 1: the mean over the points that are wrong in either, 1 where both are too
+    bright or both too dark by the same, 1/2 where by something else, and 0 where they contradict each other. A point that is too vague to
+    tell whether it does counts as none."""
     marks = []
     for reading, known, off in compared(shown, facts):
         both = [reading, replace(reading, value=known)]
@@ -101,17 +102,12 @@ def likeness(shown, facts):
             marks.append(1.0 if off <= FITS else 0.5)
         elif abs(reading.value - known) > FITS * reading.error:
             marks.append(0.0)
-    return fmean(marks) if marks else 0.0, marks.count(0.0)
+    return fmean(marks) if marks else 0.0
 
 
 def similar_to(facts, known):
     """The name that may fit if none does, in a list: a shader written in another way shows a mistake at the same points, but not always
-    with the same numbers. None unless it explains most of what is wrong and few points contradict it. Not the second one as well: of
-    twenty in the notebook's record, two were right."""
-    alike = {name: likeness(entry["shows"], facts) for name, entry in known.items() if "unseen" not in entry}
-    near = [
-        name
-        for name, (value, contradictions) in alike.items()
-        if value >= LEAST_LIKENESS and contradictions <= MOST_CONTRADICTIONS
-    ]
-    return [max(near, key=alike.get)] if near else []
+    with the same numbers. None unless it explains much of what is wrong, and clearly more than any other does."""
+    alike = [(likeness(entry["shows"], facts), name) for name, entry in known.items() if "unseen" not in entry]
+    (second, _), (most, name) = sorted([(0.0, ""), (0.0, ""), *alike])[-2:]
+    return [name] if most >= LEAST_LIKENESS and most - second >= LEAST_LEAD else []

@@ -62,7 +62,7 @@ def worst_scene(result):
         subject, noise = result["diagnosis"]["too_noisy"]
         return noise_words(subject, f"{noise:.2g} times the variance", TOO_MUCH)
     if not scene:
-        return "the pictures are right, but not what the experiments show"
+        return "no picture shows a bias, but experiments do"
     if result["verdict"] == "biased":
         worst = max(
             (test["value"] for test in [*scene["image"], *(tile for tile in scene["tiles"] if tile["is_biased"])]), key=abs
