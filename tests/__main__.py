@@ -115,19 +115,26 @@ def run_ctest(arguments, kept=None):
     return process.returncode != 0 or passed == 0
 
 
+def listed(arguments):
+    """The names of the tests that these arguments of ctest choose, in its order."""
+    command = ["ctest", "--test-dir", BUILD, "-N", *arguments]
+    return re.findall(r"(?m)^ *Test +#\d+: (\S+)$", subprocess.run(command, capture_output=True, encoding="utf-8").stdout)
+
+
 def run_all(arguments, is_status):
     """Runs those of all tests that are not green, or tells how they all stand."""
-    listing = subprocess.run(["ctest", "--test-dir", BUILD, "-N", *arguments], capture_output=True, encoding="utf-8").stdout
-    numbers = {name: number for number, name in re.findall(r"(?m)^ *Test +#(\d+): (\S+)$", listing)}
-    kept = KeptResults(KEPT)
-    if not numbers:  # as ctest explains
+    tests, kept = listed(arguments), KeptResults(KEPT)
+    if not tests:  # as ctest explains
         return run_ctest(arguments)
     if is_status:
-        return kept.tell(numbers)
-    if "-I" in arguments:  # now in the numbers
-        del arguments[arguments.index("-I") :][:2]
-    waiting = [numbers[test] for test in numbers if kept.state(test) != "green"]
-    print(f"{len(numbers) - len(waiting)} of {len(numbers)} tests are green since the last change of what they read")
+        return kept.tell(tests)
+    if "-I" in arguments:  # the numbers take its place
+        at = arguments.index("-I")
+        del arguments[at : at + 2]
+    # ctest's -I counts the tests that its other arguments choose.
+    numbers = {test: str(number) for number, test in enumerate(listed(arguments), 1)}
+    waiting = [numbers[test] for test in tests if kept.state(test) != "green"]
+    print(f"{len(tests) - len(waiting)} of {len(tests)} tests are green since the last change of what they read")
     return bool(waiting) and run_ctest([*arguments, "-I", ",".join(["0,0,0", *waiting])], kept)
 
 

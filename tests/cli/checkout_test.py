@@ -161,13 +161,17 @@ class WhatIsBuilt(ProgramTest):
         self.write(
             "tree/bin/ctest",
             f"""#!/bin/sh
-if [ "$3" = -N ]; then printf '  Test %s\\n' '#1: unit.A.B' ' #2: mistakes.c' ' #3: cli.D' '#14: unit.E.F'; exit; fi
+case "$*" in
+*-N*-I*) printf '  Test %s\\n' ' #3: cli.D' '#14: unit.E.F'; exit ;;
+*-N*-L*) printf '  Test %s\\n' ' #2: mistakes.c' '#14: unit.E.F'; exit ;;
+*-N*) printf '  Test %s\\n' '#1: unit.A.B' ' #2: mistakes.c' ' #3: cli.D' '#14: unit.E.F'; exit ;;
+esac
 for last; do :; done
 echo "$last" >> {self.folder}/asked
 case $last in *,1*) echo '1/4 Test  #1: unit.A.B ...   Passed    1.00 sec' ;; esac
 case $last in *,2*) echo '2/4 Test  #2: mistakes.c ...   Passed    1.00 sec' ;; esac
 case $last in *,3*) echo '3/4 Test  #3: cli.D ...   Passed    7200.00 sec' ;; esac
-case $last in *,14*) echo '4/4 Test #14: unit.E.F ...***Failed    1.00 sec'; exit 8 ;; esac
+case $last in *,4*) echo '4/4 Test #14: unit.E.F ...***Failed    1.00 sec'; exit 8 ;; esac
 """,
         )
         environment = {"PATH": f"{self.folder / 'tree/bin'}:{os.environ['PATH']}"}
@@ -187,9 +191,10 @@ case $last in *,14*) echo '4/4 Test #14: unit.E.F ...***Failed    1.00 sec'; exi
             (self.folder / "tree" / folder).mkdir()
         self.assertIn("4 never run", test("--all", "--status", code=0))
         test("--all", code=1)
-        self.assertEqual(asked(), "0,0,0,1,2,3,14")
-        test("--all", code=1)
-        self.assertEqual(asked(), "0,0,0,14", "the red one")
+        self.assertEqual(asked(), "0,0,0,1,2,3,4")
+        for choice, number in (([], 4), (["-I", "3,,1"], 4), (["-L", "all"], 2)):
+            test("--all", *choice, code=int(number == 4))
+            self.assertEqual(asked(), f"0,0,0,{number}", f"the red one, as ctest counts it with {choice}")
         self.assertRegex(test("--all", "--status", code=0), r"3 green, 1 red\n  red: unit.E.F\n.* took 2.0 hours")
         self.write("tree/docs/new.md", "a page")
         self.assertIn("2 green, 1 old, 1 red", test("--all", "--status", code=0))
