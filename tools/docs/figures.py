@@ -242,7 +242,7 @@ def parse():
     options = parser.parse_args()
     for name in options.names:
         if name not in FIGURES:
-            parser.error(f"there is no figure '{name}': {', '.join(FIGURES)}")
+            parser.error(f"there is no figure '{name}'")
     return options
 
 
