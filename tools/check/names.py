@@ -1,4 +1,4 @@
-"""The names that the facts leave: mistakes of the catalogue that show the same, or where none does, the most similar ones."""
+"""The names that the facts leave: mistakes of the catalogue that show the same, or where none does, the most similar one."""
 import math
 from dataclasses import replace
 from statistics import fmean
