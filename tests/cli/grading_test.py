@@ -7,8 +7,11 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
 
 from program import BINARIES, PROJECT, ProgramTest  # first: it finds the tools
+from check import command
 from check.formats import as_gradescope
 from course.handout import exercise_of, take_out
 from project import CHAPTERS
@@ -82,6 +85,23 @@ class GradingTest(ProgramTest):
         self.assertEqual(score("correct", "correct", "biased"), 8)
         self.assertEqual(score("biased", "biased", "biased"), 0)
         self.assertEqual(score("correct", "biased", "correct", is_unfinished=True), 0)
+
+    def test_what_experiments_alone_find_costs_points(self):
+        options = SimpleNamespace(form="gradescope", chapter=3, points=10)
+        for verdict, of_pictures, score in (
+            ("correct", "correct", 10),
+            ("noisy", "correct", 7.5),
+            ("noisy", "noisy", 5),
+            ("biased", "noisy", 2.5),
+        ):
+            scene = {"scene": "lamps", "verdict": of_pictures, "noise": [2.0], "most_noise": 1.5}
+            result = {"verdict": verdict, "scenes": [scene], "diagnosis": {"too_noisy": ["light", 9.0]}}
+            with (
+                mock.patch.multiple(command, scene_words=lambda _: [], hints_of=lambda _: []),
+                mock.patch("builtins.print") as printed,
+            ):
+                command.report(options, result)
+            self.assertEqual(json.loads(printed.call_args.args[0])["score"], score, (verdict, of_pictures))
 
     def test_a_check_that_cannot_run_says_so(self):
         (self.folder / "source/lab").mkdir(parents=True)

@@ -25,7 +25,7 @@ from check.formats import as_gradescope, as_github
 from check.expected import DESCRIPTIONS
 from check.grading import MOST_RUNS, RUNS, SCENES, first_seed, is_sure, judge, stay_in_the_driver
 from check.submission import Submission
-from check.words import detail_lines, hints_of, laid_out, scene_words, short_lines, tell_early
+from check.words import detail_lines, hints_of, laid_out, scene_words, short_lines, tell_early, worst_scene
 from project import CHAPTERS, ROOT, Parser, UserError, add_device_options, number, original, printable
 from report.measurement import relative
 
@@ -128,8 +128,8 @@ def report(options, result):
         print(json.dumps(result, indent=1))
     elif options.form == "gradescope":
         scenes = [(scene["scene"], scene["verdict"], ", ".join(scene_words(scene))) for scene in result.get("scenes", [])]
-        if result["verdict"] == "biased" and all(verdict == "correct" for _, verdict, _ in scenes):
-            scenes.append(("experiments", "biased", result["diagnosis"]["facts"][0]["text"]))
+        if scenes and result["verdict"] not in ("correct", *(verdict for _, verdict, _ in scenes)):
+            scenes.append(("experiments", result["verdict"], worst_scene(result)))
         passed_anyway = DESCRIPTIONS.get(options.chapter, {}).get("check", {}).get("passed_by_placeholder", [])
         print(
             json.dumps(as_gradescope(scenes, hints, options.points, passed_anyway, bool(result.get("unfinished_line"))), indent=1)
