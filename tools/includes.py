@@ -28,7 +28,9 @@ def named_files(folder):
 
 def included(line, source, named):
     """The file that a line of a source includes, or None. The names that `named` has stand for those files."""
-    name = match[1] if (match := INCLUDE.match(line)) else ""
+    if not (match := INCLUDE.match(line)):
+        return None
+    name = match[1]
     places = [named.get(name, source.parent / name), *(ROOT / folder / name for folder in FOLDERS)]
     return next((place.resolve() for place in places if place.is_file()), None)
 

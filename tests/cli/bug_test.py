@@ -64,9 +64,9 @@ class BugTest(Bugs, ProgramTest):
             mistakes.bugs_of(3)
 
     def test_every_answer_names_what_catches_the_bug(self):
-        known = cited_tests.written_tests()
+        known, catalogue = cited_tests.written_tests(), mistakes.catalogue()
         for chapter in CHAPTERS:
-            checked = {found.mistake["name"] for found in mistakes.catalogue() if found.chapter == chapter}
+            checked = {found.mistake["name"] for found in catalogue if found.chapter == chapter}
             for found in mistakes.bugs_of(chapter):
                 test, command = bug.caught_by(found)
                 if "sanitizer" in found.mistake:
