@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 from program import CHAPTER as CHAPTER_PROGRAM
-from program import PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
+from program import BINARIES, PROJECT, UNOPTIMISED, ProgramTest  # first: it finds the tools
 from image_files import Exr
 
 CHAPTER = "01_uniform_sampling"
@@ -51,6 +51,14 @@ class ShaderFiles(ProgramTest):
     def assert_shader_refused(self, shader, *words):
         self.shader.write_bytes(shader if isinstance(shader, bytes) else shader.encode())
         self.assert_refused([*self.arguments, "--output=no.exr"], *words)
+
+    def test_a_loop_that_finishes_no_sample_gives_a_black_picture(self):
+        """As chapter 10's exercise does before it is solved, with one thread a pixel."""
+        loop = "10_path_regeneration/sample_loop.glsl"
+        self.write(f"mine/{loop}", "void render_samples(uvec2 position, uint first, uint end, uint step) {}\n")
+        arguments = [*self.arguments[:-1], f"--shader={loop}=mine/{loop}", "--max-threads-per-pixel=1", "--output=black.exr"]
+        self.render(*arguments, program=BINARIES / "10_path_regeneration", environment=UNOPTIMISED)
+        self.assertEqual(Exr(self.folder / "black.exr").mean(), [0, 0, 0])
 
     def test_line_ends_and_byte_order_mark_of_windows(self):
         self.beside("helper.glsl", b"\xef\xbb\xbf// A helper\r\n" + HELPER.replace("\n", "\r\n").encode())
