@@ -128,11 +128,12 @@ def run_all(arguments, is_status):
         return run_ctest(arguments)
     if is_status:
         return kept.tell(tests)
-    if "-I" in arguments:  # the numbers take its place
+    numbered = tests  # ctest's -I counts the tests that its other arguments choose
+    if "-I" in arguments:
         at = arguments.index("-I")
         del arguments[at : at + 2]
-    # ctest's -I counts the tests that its other arguments choose.
-    numbers = {test: str(number) for number, test in enumerate(listed(arguments), 1)}
+        numbered = listed(arguments)
+    numbers = {test: str(number) for number, test in enumerate(numbered, 1)}
     waiting = [numbers[test] for test in tests if kept.state(test) != "green"]
     print(f"{len(tests) - len(waiting)} of {len(tests)} tests are green since the last change of what they read")
     return bool(waiting) and run_ctest([*arguments, "-I", ",".join(["0,0,0", *waiting])], kept)

@@ -162,6 +162,7 @@ class ViewerTest : public testing::Test {
         click(at.x, at.y);
     }
 
+    // Clicks a control until that has had its effect.
     void click_until(const std::function<vec2()>& place, const std::function<bool()>& is_done) {
         for (int attempt = 0; attempt < 5 && !is_done(); ++attempt) click_at_rest(place);
         EXPECT_TRUE(is_done());
