@@ -32,17 +32,6 @@ tee -a '{notes}' | '{program}' "$@"
 
 
 class CheckTest(Checking, ProgramTest):
-    @NAMES
-    def test_the_process_ends_with_the_verdict(self):
-        for arguments, expected, early, words in (
-            ((), 0, "no picture is wrong", "correct +nothing differs, "),
-            ((self.wrong(), "--teacher"), 1, "is too bright", "biased +distance-not-squared: "),
-        ):
-            code, out, err = self.run_tool("check", 3, "--runs", 5, "--samples", 1, "--backend", "compute", *arguments)
-            self.assertEqual(code, expected, err)
-            self.assertRegex(err, rf"(?m)^so far +[^\n]*{early}")
-            self.assertRegex(out, rf"\A{words}")
-
     def test_the_chapters_own_shader_is_correct(self):
         code, result = self.check_few()
         self.assertEqual((code, result["verdict"]), (0, "correct"), result)
@@ -126,60 +115,6 @@ class CheckTest(Checking, ProgramTest):
         self.assertRegex(self.check(*FEW, "--github", broken)[1], rf"(?m)^::error file={broken},line=2,")
         result = json.loads(self.check(*FEW, "--gradescope", broken)[1])
         self.assertEqual([(test["score"], test["max_score"]) for test in result["tests"]], [(0, 10)])
-
-    def graded(self):
-        return list(csv.DictReader((self.folder / "graded/results.csv").read_text(encoding="utf-8-sig").splitlines()))
-
-    @NAMES
-    def test_a_folder_is_graded_into_a_table_and_goes_on(self):
-        text = SHADER.read_text(encoding="utf-8")
-        (self.folder / "all/dora").mkdir(parents=True)
-        self.write("all/anna.glsl", text)
-        self.write("all/bob.glsl", "nothing")
-        for name in NO_UTF8:
-            self.write(Path("all") / name, text)
-        self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # traces no rays
-        self.write("all/carl.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    // TODO\n    return vec3(0.2);\n}\n")
-        (self.folder / "all/gone.glsl").symlink_to("nowhere")
-        self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
-        grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
-        expected = {
-            "'=1 #2, ü": "biased",
-            "anna": "correct",
-            "bob": "not graded",
-            "carl": "unfinished",
-            "dora": "biased",
-            "gone": "not graded",
-        }
-        expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
-        code, out, err = self.check(*grade_all)
-        self.assertEqual(code, 2, err)
-        self.assertRegex(
-            out,
-            rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 8: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance",
-        )
-        table = self.graded()
-        self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
-        page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
-        self.assertEqual(
-            sorted(re.findall(r'<img src="(.*?)"', page)),
-            ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "carl.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"],
-        )
-        self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
-
-        self.write("all/abe.glsl", ENDLESS)
-        self.judge.reset_mock()
-        self.assertEqual(self.check(*grade_all, "--time-limit", 1)[0], 2)
-        self.assertEqual(
-            [call.args[0].file.stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew"
-        )
-        rows = {row["submission"]: row for row in self.graded()}
-        self.assertEqual({name: row["verdict"] for name, row in rows.items()}, expected | {"abe": "not graded"})
-        self.assertRegex(rows["abe"]["error"], "ended after 1 s|device")
-        self.assertEqual(
-            [rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
-            [row for row in table if row["verdict"] != "not graded"],
-        )
 
     def test_a_folder_without_mistakes_has_no_list_of_them(self):
         self.write("all/anna.glsl", SHADER.read_bytes())
@@ -334,6 +269,73 @@ class CheckTest(Checking, ProgramTest):
             code, out, err = self.check(*arguments)
             self.assertEqual((code, out), (2, ""))
             self.assertRegex(err, r"\Aerror: [^\n]{12,}\n\Z")
+
+
+class Check_all(Checking, ProgramTest):
+    def graded(self):
+        return list(csv.DictReader((self.folder / "graded/results.csv").read_text(encoding="utf-8-sig").splitlines()))
+
+    @NAMES
+    def test_a_folder_is_graded_into_a_table_and_goes_on(self):
+        text = SHADER.read_text(encoding="utf-8")
+        (self.folder / "all/dora").mkdir(parents=True)
+        self.write("all/anna.glsl", text)
+        self.write("all/bob.glsl", "nothing")
+        for name in NO_UTF8:
+            self.write(Path("all") / name, text)
+        self.write("all/=1 #2, ü.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) { return vec3(0.3); }")  # traces no rays
+        self.write("all/carl.glsl", "vec3 path_trace(Ray ray, inout uvec2 seed) {\n    // TODO\n    return vec3(0.2);\n}\n")
+        (self.folder / "all/gone.glsl").symlink_to("nowhere")
+        self.write("all/dora/path_trace.glsl", self.wrong().read_bytes())
+        grade_all = (*FEW, "--all", self.folder / "all", "--output", self.folder / "graded")
+        expected = {
+            "'=1 #2, ü": "biased",
+            "anna": "correct",
+            "bob": "not graded",
+            "carl": "unfinished",
+            "dora": "biased",
+            "gone": "not graded",
+        }
+        expected |= {r"m\xfcller": "correct", r"m\xfdller": "correct"}
+        code, out, err = self.check(*grade_all)
+        self.assertEqual(code, 2, err)
+        self.assertRegex(
+            out,
+            rf"what is wrong most often\n(\d of \d: [^\n]*\n)*1 of 8: [^\n]*twice as far away\? \([^\n]*chapters/{SHADER.parent.name}/README.md\): off by the distance",
+        )
+        table = self.graded()
+        self.assertEqual({row["submission"]: row["verdict"] for row in table}, expected)
+        page = (self.folder / "graded/index.html").read_text(encoding="utf-8")
+        self.assertEqual(
+            sorted(re.findall(r'<img src="(.*?)"', page)),
+            ["%3D1%20%232%2C%20%C3%BC.png", "anna.png", "carl.png", "dora.png", "m%5Cxfcller.png", "m%5Cxfdller.png"],
+        )
+        self.assertTrue((self.folder / "graded/anna.png").read_bytes().startswith(b"\x89PNG"))
+
+        self.write("all/abe.glsl", ENDLESS)
+        self.judge.reset_mock()
+        self.assertEqual(self.check(*grade_all, "--time-limit", 1)[0], 2)
+        self.assertEqual(
+            [call.args[0].file.stem for call in self.judge.mock_calls], ["abe", "bob"], "the others are not graded anew"
+        )
+        rows = {row["submission"]: row for row in self.graded()}
+        self.assertEqual({name: row["verdict"] for name, row in rows.items()}, expected | {"abe": "not graded"})
+        self.assertRegex(rows["abe"]["error"], "ended after 1 s|device")
+        self.assertEqual(
+            [rows[row["submission"]] for row in table if row["verdict"] != "not graded"],
+            [row for row in table if row["verdict"] != "not graded"],
+        )
+
+    @NAMES
+    def test_the_process_ends_with_the_verdict(self):
+        for arguments, expected, early, words in (
+            ((), 0, "no picture is wrong", "correct +nothing differs, "),
+            ((self.wrong(), "--teacher"), 1, "is too bright", "biased +distance-not-squared: "),
+        ):
+            code, out, err = self.run_tool("check", 3, "--runs", 5, "--samples", 1, "--backend", "compute", *arguments)
+            self.assertEqual(code, expected, err)
+            self.assertRegex(err, rf"(?m)^so far +[^\n]*{early}")
+            self.assertRegex(out, rf"\A{words}")
 
 
 class LaterChapters_all(Checking, ProgramTest):

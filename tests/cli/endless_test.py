@@ -23,44 +23,13 @@ BODY = """vec3 path_trace(Ray ray, inout uvec2 seed) {
 """
 
 
-class EndlessTest(CopiedLab, ProgramTest):
+class Endless(CopiedLab):
     def setUp(self):
         super().setUp()
         self.shader.write_text(BODY, encoding="utf-8")
 
-    def end(self, process, number):
-        process.send_signal(number)
-        try:
-            return process.communicate(timeout=300)[1]
-        except subprocess.TimeoutExpired:
-            process.kill()
-            self.fail(f"still running long after {number}")
 
-    def test_a_signal_ends_a_render_whose_shader_does_not_end(self):
-        for backend, number, code in (
-            ("compute", signal.SIGTERM, 3),
-            ("pipeline", signal.SIGINT, 3),
-            ("native", signal.SIGTERM, 1),
-        ):
-            with self.subTest(backend=backend), self.start(
-                "quad.json",
-                "--width=32",
-                "--height=32",
-                "--samples=2",
-                "--headless",
-                f"--backend={backend}",
-                program=self.program,
-            ) as process:
-                self.assertIn(f"backend {backend}", process.stdout.readline())
-                note = process.stderr.readline()  # after some seconds
-                self.assertRegex(
-                    note, rf"\Anote: no sample for \d+ s: the device is busy, or a loop of \S+{SHADER} does not end; Ctrl-C stops"
-                )
-                err = self.end(process, number)
-                answer = "" if backend == "native" else r"[^\n]*did not answer within 3 s: it is busy, or a loop"
-                self.assertRegex(err, rf"(?m)^error: {answer}[^\n]*nothing[^\n]*\n\Z")
-                self.assertEqual(process.returncode, code)
-
+class EndlessTest(Endless, ProgramTest):
     def test_a_time_limit_ends_it_and_names_the_loop(self):
         for backend in ("compute", "pipeline", "native"):
             with self.subTest(backend=backend):
@@ -103,3 +72,38 @@ class EndlessTest(CopiedLab, ProgramTest):
             _, err = process.communicate(timeout=300)
         self.assertRegex(err, rf"\Aerror: \S+{SHADER}:3: this loop, or one around it, does not end[^\n]*\n\Z")
         self.assertFalse((self.folder / "a.exr").exists())
+
+
+class Endless_all(Endless, ProgramTest):
+    def end(self, process, number):
+        process.send_signal(number)
+        try:
+            return process.communicate(timeout=300)[1]
+        except subprocess.TimeoutExpired:
+            process.kill()
+            self.fail(f"still running long after {number}")
+
+    def test_a_signal_ends_a_render_whose_shader_does_not_end(self):
+        for backend, number, code in (
+            ("compute", signal.SIGTERM, 3),
+            ("pipeline", signal.SIGINT, 3),
+            ("native", signal.SIGTERM, 1),
+        ):
+            with self.subTest(backend=backend), self.start(
+                "quad.json",
+                "--width=32",
+                "--height=32",
+                "--samples=2",
+                "--headless",
+                f"--backend={backend}",
+                program=self.program,
+            ) as process:
+                self.assertIn(f"backend {backend}", process.stdout.readline())
+                note = process.stderr.readline()  # after some seconds
+                self.assertRegex(
+                    note, rf"\Anote: no sample for \d+ s: the device is busy, or a loop of \S+{SHADER} does not end; Ctrl-C stops"
+                )
+                err = self.end(process, number)
+                answer = "" if backend == "native" else r"[^\n]*did not answer within 3 s: it is busy, or a loop"
+                self.assertRegex(err, rf"(?m)^error: {answer}[^\n]*nothing[^\n]*\n\Z")
+                self.assertEqual(process.returncode, code)

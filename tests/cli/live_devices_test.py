@@ -18,46 +18,12 @@ WRITES_AT_MOST = """(() => {
 
 
 class LiveDevicesTest(LivePages, unittest.TestCase):
-    def lose(self, losses=0, restores=True):
-        """Takes the GPU away, as if that had happened so many times without a picture between."""
-        self.frame(
-            f"(frame.picture.losses = {losses}, (window.loss ??= frame.picture.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())"
-        )
-        self.wait("frame.picture.renderer.gl.isContextLost() && !frame.picture.renderings.length", "the loss")
-        self.frame("(frame.film = null, 0)")
-        if restores:
-            self.frame("window.loss.restoreContext()")
-
-    def test_a_lost_context_starts_again(self):
-        self.start(3)
-        for _ in range(3):
-            self.wait("frame.film?.samples >= 16", "a picture")
-            self.lose()
-        self.wait("frame.film", "a new picture")
-        self.lose(losses=1)
-        self.wait("frame.verdict.textContent.includes('away again before')", "the message")
-        self.click("Restart")
-        self.wait("frame.film?.samples >= 16", "a picture")
-        self.lose(restores=False)
-        self.click("Restart")
-        self.wait("frame.verdict.textContent.includes('has taken the GPU away: reload')", "the message")
-
     def test_without_webgl(self):
         self.start(3, before="HTMLCanvasElement.prototype.getContext = () => null")
         self.wait("frame.verdict?.textContent.includes('no WebGL 2')", "the message")
         for name in ("Restart", "Check"):
             self.click(name)
         self.assert_no_complaints()
-
-    def test_devices_that_write_less_at_once(self):
-        for most in (2, 1):
-            self.start(3, before=WRITES_AT_MOST % most)
-            self.wait("frame.latest?.verdict", "a verdict")
-            self.assertRegex(self.frame("frame.latest.text"), "^agrees")
-            self.assertGreater(self.frame("frame.film.rays"), 0)
-            self.assert_no_complaints()
-        self.start(3, before=WRITES_AT_MOST % 0)
-        self.wait("frame.verdict?.textContent.includes('cannot store the sums')", "the message")
 
     def test_a_device_that_draws_nothing(self):
         self.start(3, before="WebGL2RenderingContext.prototype.drawArrays = () => {}")
@@ -70,28 +36,6 @@ class LiveDevicesTest(LivePages, unittest.TestCase):
         self.assertEqual(self.frame("frame.verdict.textContent"), "no verdict: the shader traces no ray")
         self.frame("void frame.check()")
         self.wait("frame.verdict.textContent.includes('nothing to check')", "the message")
-
-    def test_a_long_loop(self):
-        self.start(3)
-        self.edit(BLACK, BLACK + " for (int i = 0; i < 20000; ++i) radiance.r += 1e-20;")
-        self.wait("frame.film && frame.editor.edited.length", "a picture")
-        self.assertEqual(self.frame("frame.editor.error.textContent"), "")
-
-    def test_a_loop_that_does_not_end(self):
-        """Nor does the next one in the same page, once the reader has mended the first."""
-        right = "vec3 throughput = vec3(1.0);"
-        self.start(3)
-        for loop in (
-            "while (true) { radiance.r += 0.0; }",
-            "for (;;) radiance.r += 0.0;",
-            "do { radiance.r += 0.0; } while (true);",
-            "if (seed.x % 4096u == 0u) while (true) { radiance.r += 0.0; }",
-        ):
-            self.edit(right, f"{right} {loop}")
-            self.assertRegex(self.error(), r"path_trace\.glsl:\d+: this loop does not end")
-            self.assertFalse(self.frame("frame.picture.renderer.gl.isContextLost()"))
-            self.edit(f"{right} {loop}", right)
-            self.wait("!frame.editor.error.textContent && frame.film", "the picture")
 
     def test_a_pause(self):
         self.start(3)
@@ -130,3 +74,61 @@ class LiveDevicesTest(LivePages, unittest.TestCase):
         self.assertEqual(self.frame("frame.picture.renderings[0].rendering.samples"), samples)
         self.browser.evaluate("window.isHidden = false")
         self.wait(f"frame.picture.renderings[0].rendering.samples > {samples}", "more samples")
+
+
+class LiveDevices_all(LivePages, unittest.TestCase):
+    def lose(self, losses=0, restores=True):
+        """Takes the GPU away, as if that had happened so many times without a picture between."""
+        self.frame(
+            f"(frame.picture.losses = {losses}, (window.loss ??= frame.picture.renderer.gl.getExtension('WEBGL_lose_context')).loseContext())"
+        )
+        self.wait("frame.picture.renderer.gl.isContextLost() && !frame.picture.renderings.length", "the loss")
+        self.frame("(frame.film = null, 0)")
+        if restores:
+            self.frame("window.loss.restoreContext()")
+
+    def test_a_lost_context_starts_again(self):
+        self.start(3)
+        for _ in range(3):
+            self.wait("frame.film?.samples >= 16", "a picture")
+            self.lose()
+        self.wait("frame.film", "a new picture")
+        self.lose(losses=1)
+        self.wait("frame.verdict.textContent.includes('away again before')", "the message")
+        self.click("Restart")
+        self.wait("frame.film?.samples >= 16", "a picture")
+        self.lose(restores=False)
+        self.click("Restart")
+        self.wait("frame.verdict.textContent.includes('has taken the GPU away: reload')", "the message")
+
+    def test_devices_that_write_less_at_once(self):
+        for most in (2, 1):
+            self.start(3, before=WRITES_AT_MOST % most)
+            self.wait("frame.latest?.verdict", "a verdict")
+            self.assertRegex(self.frame("frame.latest.text"), "^agrees")
+            self.assertGreater(self.frame("frame.film.rays"), 0)
+            self.assert_no_complaints()
+        self.start(3, before=WRITES_AT_MOST % 0)
+        self.wait("frame.verdict?.textContent.includes('cannot store the sums')", "the message")
+
+    def test_a_long_loop(self):
+        self.start(3)
+        self.edit(BLACK, BLACK + " for (int i = 0; i < 20000; ++i) radiance.r += 1e-20;")
+        self.wait("frame.film && frame.editor.edited.length", "a picture")
+        self.assertEqual(self.frame("frame.editor.error.textContent"), "")
+
+    def test_a_loop_that_does_not_end(self):
+        """Nor does the next one in the same page, once the reader has mended the first."""
+        right = "vec3 throughput = vec3(1.0);"
+        self.start(3)
+        for loop in (
+            "while (true) { radiance.r += 0.0; }",
+            "for (;;) radiance.r += 0.0;",
+            "do { radiance.r += 0.0; } while (true);",
+            "if (seed.x % 4096u == 0u) while (true) { radiance.r += 0.0; }",
+        ):
+            self.edit(right, f"{right} {loop}")
+            self.assertRegex(self.error(), r"path_trace\.glsl:\d+: this loop does not end")
+            self.assertFalse(self.frame("frame.picture.renderer.gl.isContextLost()"))
+            self.edit(f"{right} {loop}", right)
+            self.wait("!frame.editor.error.textContent && frame.film", "the picture")

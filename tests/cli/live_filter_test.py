@@ -21,7 +21,7 @@ SHARPNESS = "SHARPNESS = 0.45;"
 LOOP = "for (int x = -PATCH; x <= PATCH; ++x)"
 
 
-class LiveFilterTest(LivePages, unittest.TestCase):
+class LiveFilter_all(LivePages, unittest.TestCase):
     def start_tiny(self):
         self.start(16, before=TINY)
 

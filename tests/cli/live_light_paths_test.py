@@ -33,7 +33,7 @@ POWER = "vec3 power = PI * y.emission"  # of a light path
 SPLAT = "add_splat(min(pixel, parameters.image_size - 1u), radiance, sample_index);"
 
 
-class LiveLightPathsTest(LivePages, unittest.TestCase):
+class LiveLightPaths_all(LivePages, unittest.TestCase):
     def start_tiny(self, before=""):
         self.start(15, before=f"{TINY}; {before}")
         return self.picture()

@@ -96,10 +96,8 @@ class LivePages(Site):
 
 
 class LivePagesTest(LivePages, unittest.TestCase):
-    def test_chapters_agree_with_their_references(self):
-        for chapter in (1, 3, 8, 10):
-            with self.subTest(chapter=chapter):
-                self.assert_agrees(chapter)
+    def test_a_chapter_agrees_with_its_reference(self):
+        self.assert_agrees(3)
 
     def test_a_mistake_is_biased(self):
         self.start(3)
@@ -135,6 +133,41 @@ class LivePagesTest(LivePages, unittest.TestCase):
             )
         )
 
+    def test_fits_a_phone(self):
+        self.browser.resize(NARROW)
+        try:
+            self.start(3)
+            self.wait("frame.latest?.verdict", "a verdict")
+            self.assertEqual(self.browser.evaluate(INSPECT)["wide"], [])
+            unnamed = "[...frame.root.querySelectorAll('button, select, input, textarea')].filter(e => !e.labels?.length && !e.ariaLabel && !e.textContent.trim()).length"
+            self.assertEqual(self.frame(unnamed), 0)
+        finally:
+            self.browser.resize(WIDE)
+
+    def test_pages_are_small(self):
+        for chapter in course():
+            folder = self.site / "live"
+            about = json.loads(
+                re.search(r"^live\.chapters = (.*);$", (folder / "sources.js").read_text(encoding="utf-8"), re.MULTILINE)[1]
+            )[CHAPTERS[chapter]]
+            scripts = sum(file.stat().st_size for file in folder.glob("*.*"))
+            for picture in about["pictures"]:
+                size = scripts + sum(
+                    (folder / "data" / f"{picture[key]}.js").stat().st_size for key in ("scene", "reference") if key in picture
+                )
+                self.assertLess(
+                    size,
+                    600_000 if picture["name"].startswith("cornell_box") else 2_600_000,
+                    f"chapter {chapter}, {picture['name']}",
+                )
+
+    def test_every_chapter_has_a_frame(self):
+        for chapter in course():
+            page = (self.site / f"chapters/{CHAPTERS[chapter]}/index.html").read_text(encoding="utf-8")
+            self.assertIn(f'data-chapter="{CHAPTERS[chapter]}"', page, "a line <!-- live: SCENE --> in its README.md")
+
+
+class LivePages_all(LivePages, unittest.TestCase):
     def test_the_gallery_starts_from_bugs(self):
         self.browser.visit("about:blank")
         self.browser.visit((self.site / "docs/bugs.html").as_uri())
@@ -181,41 +214,6 @@ class LivePagesTest(LivePages, unittest.TestCase):
         self.frame("(frame.controls.view.value = 'picture', frame.viewChanged())")
         self.wait("frame.latest?.verdict && frame.verdict.textContent.startsWith('agrees')", "the picture again")
 
-    def test_fits_a_phone(self):
-        self.browser.resize(NARROW)
-        try:
-            self.start(3)
-            self.wait("frame.latest?.verdict", "a verdict")
-            self.assertEqual(self.browser.evaluate(INSPECT)["wide"], [])
-            unnamed = "[...frame.root.querySelectorAll('button, select, input, textarea')].filter(e => !e.labels?.length && !e.ariaLabel && !e.textContent.trim()).length"
-            self.assertEqual(self.frame(unnamed), 0)
-        finally:
-            self.browser.resize(WIDE)
-
-    def test_pages_are_small(self):
-        for chapter in course():
-            folder = self.site / "live"
-            about = json.loads(
-                re.search(r"^live\.chapters = (.*);$", (folder / "sources.js").read_text(encoding="utf-8"), re.MULTILINE)[1]
-            )[CHAPTERS[chapter]]
-            scripts = sum(file.stat().st_size for file in folder.glob("*.*"))
-            for picture in about["pictures"]:
-                size = scripts + sum(
-                    (folder / "data" / f"{picture[key]}.js").stat().st_size for key in ("scene", "reference") if key in picture
-                )
-                self.assertLess(
-                    size,
-                    600_000 if picture["name"].startswith("cornell_box") else 2_600_000,
-                    f"chapter {chapter}, {picture['name']}",
-                )
-
-    def test_every_chapter_has_a_frame(self):
-        for chapter in course():
-            page = (self.site / f"chapters/{CHAPTERS[chapter]}/index.html").read_text(encoding="utf-8")
-            self.assertIn(f'data-chapter="{CHAPTERS[chapter]}"', page, "a line <!-- live: SCENE --> in its README.md")
-
-
-class LivePages_all(LivePages, unittest.TestCase):
     def test_every_chapter_agrees_with_its_reference(self):
         for chapter in course():
             with self.subTest(chapter=chapter):

@@ -111,6 +111,8 @@ class LivePathTest(LivePath, unittest.TestCase):
         self.wait("frame.picture.path.root.hidden", "no path")
         self.assert_no_complaints()
 
+
+class LivePath_all(LivePath, unittest.TestCase):
     def test_chapters_with_branches_media_and_light_samples(self):
         for chapter, words in ((5, "light sample at|Russian roulette"), (13, "collides in the medium, at|light sample at")):
             with self.subTest(chapter=chapter):
@@ -118,8 +120,6 @@ class LivePathTest(LivePath, unittest.TestCase):
                 self.assert_samples_add_up(4)
                 self.assertRegex(str(self.lines()), words)
 
-
-class LivePath_all(LivePath, unittest.TestCase):
     def test_every_chapter_shows_the_samples_of_its_picture(self):
         for chapter in course():
             if description(CHAPTERS[chapter]).get("light_paths"):

@@ -10,7 +10,7 @@ TRUE = {2: [0.62, 0.12, 0.1], 3: [0.16, 0.46, 0.13]}  # red and green in cornell
 CLOSE = 0.1  # relative, with 16 samples of a tiny picture
 
 
-class LiveSolverTest(LivePages, unittest.TestCase):
+class LiveSolver_all(LivePages, unittest.TestCase):
     def solver(self, words):
         return self.frame(f"(solver => {words})(frame.solver)")
 

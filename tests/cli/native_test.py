@@ -100,7 +100,7 @@ class InterruptedCompilerTest(CopiedLab, ProgramTest):
             self.assertEqual(process.returncode, -signal.SIGTERM)
 
 
-class LanesTest(CopiedLab, ProgramTest):
+class Lanes_all(CopiedLab, ProgramTest):
     """How many paths run at once is said, with the reason if it is one."""
 
     def test_one_variable_turns_lanes_off(self):

@@ -143,14 +143,6 @@ class GradedTogether(Submissions, ProgramTest):
         self.assertIn(code, (0, 1), err)
         return json.loads(out)
 
-    def test_the_verdict_is_that_of_the_copy(self):
-        with self.subTest("right"):
-            self.copy_chapter(3, "21_right", {TECHNIQUE: RIGHT})
-            self.assertEqual(self.check(*FEW, "21_right/path_trace.glsl")["verdict"], "correct")
-        with self.subTest("wrong"):
-            self.copy_chapter(3, "22_wrong", {TECHNIQUE: WRONG})
-            self.assertEqual(self.check(*FEW, "22_wrong/path_trace.glsl")["verdict"], "biased")
-
     def test_errors_name_the_file_that_they_are_in(self):
         copy = self.copy_chapter(3, "21_mine")
         line = (copy / TECHNIQUE).read_text(encoding="utf-8").count("\n") + 1
@@ -166,6 +158,16 @@ class GradedTogether(Submissions, ProgramTest):
         )
         result = self.check(*FEW, copy / "path_trace.glsl")
         self.assertEqual((result["unfinished_file"], result["diagnosis"]), (str(copy / TECHNIQUE), None))
+
+
+class GradedTogether_all(Submissions, ProgramTest):
+    def test_the_verdict_is_that_of_the_copy(self):
+        with self.subTest("right"):
+            self.copy_chapter(3, "21_right", {TECHNIQUE: RIGHT})
+            self.assertEqual(self.check(*FEW, "21_right/path_trace.glsl")["verdict"], "correct")
+        with self.subTest("wrong"):
+            self.copy_chapter(3, "22_wrong", {TECHNIQUE: WRONG})
+            self.assertEqual(self.check(*FEW, "22_wrong/path_trace.glsl")["verdict"], "biased")
 
 
 class WholeClass(Submissions, ProgramTest):

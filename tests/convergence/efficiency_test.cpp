@@ -139,7 +139,7 @@ TEST(Efficiency, VisibleNormalsPay_all) {
 }
 
 // Lamps of 1:1000 in 16 rooms. The camera looks at the floor of one: lamps that it sees would add the same noise to both.
-TEST(Efficiency, TheLightTreePays) {
+TEST(Efficiency, TheLightTreePays_all) {
     Scene scene = load_shipped_scene("lamps.json");
     scene.camera.target = {6, 0, 10.6f};
     scene.camera.vertical_fov = 40;

@@ -90,7 +90,7 @@ double expected_radiance(uvec2 corner, uvec2 size, uint32_t width, double index)
     return floor_albedo / std::numbers::pi * irradiance;
 }
 
-TEST(LightPaths, ThroughAPaneFollowSnellAndFresnel) {
+TEST(LightPaths, ThroughAPaneFollowSnellAndFresnel_all) {
     RenderSettings settings = light_path_settings(64, 1);
     settings.only_path_length = 3;  // two boundaries and the floor
     const Batches batches = render_batches(lamp_above_pane(1.5f), settings, light_path_batches);
@@ -189,7 +189,7 @@ const Material coloured_glass = dielectric_material(1.5f, {0.5f, 0.2f, 0.8f});
 
 const SharedLight shared_lights[] = {
     {"box_all", [] { return room_with_box(coloured_glass); }, {0.006, 0.1}},
-    {"ball_with_smooth_normals", [] { return room_with_ball(dielectric_material(1.5f)); }, {0.006, 0.1}},
+    {"ball_with_smooth_normals_all", [] { return room_with_ball(dielectric_material(1.5f)); }, {0.006, 0.1}},
     {"wide_camera_all",
      [] {
          Scene scene = room_with_ball(dielectric_material(1.5f));
@@ -208,7 +208,7 @@ const SharedLight shared_lights[] = {
      {0.006, 0.1}},
     {"rough_glass_behind_smooth_glass", panes, {0.05, 0.75}},
     {"microfacets_all", room_with_microfacets, {0.006, 0.1}},
-    {"probe",
+    {"probe_all",
      [] {
          Scene scene = glass_with_lamp(coloured_glass);
          scene.background = vec3(1);

@@ -58,7 +58,7 @@ MeanEstimate mean_of(const Scene& scene, const RenderSettings& settings, int cha
 
 // What a ray finds behind an absorbing slab is the fraction of flights that are longer: T = e^(-σd). Of glass, the slab reflects
 // R at once; what goes in, 1 - R, passes it once or several times and loses 1 - R at its end: R + (1 - R)² T / (1 - R T).
-TEST(Media, FreeFlightsAreDistributedExponentially) {
+TEST(Media, FreeFlightsAreDistributedExponentially_all) {
     constexpr double amplitude = (glass_index - 1) / (glass_index + 1), r = amplitude * amplitude;
     for (const bool is_glass : {false, true})
         for (const float depth : {0.1f, 1.0f, 3.0f}) {
@@ -87,7 +87,7 @@ TEST(Media, WithoutAbsorptionDisappearInTheFurnace) {
 }
 
 // The same in a room whose walls glow, where light samples and bounces share the light.
-TEST(Media, InARoomThatGlowsAreAsBrightAsTheWalls) {
+TEST(Media, InARoomThatGlowsAreAsBrightAsTheWalls_all) {
     Scene room = make_scene({diffuse_material(vec3(0), vec3(1))}, box_sides(vec3(-1), vec3(1), 0, Facing::inwards));
     room.camera = {.position = {0, 0, 0.5f}, .target = {0, 0, 0}};
     for (const float anisotropy : {-0.5f, 0.8f}) {
@@ -104,7 +104,7 @@ double phase(double g, double cos_theta) {
 
 // A lamp above a wide slab: the radiance of light that has been scattered once, seen from straight above. At the depth z the lamp
 // shines through z / μ' of the medium: a p(cos θ) (1 - e^(-σd (1 + 1/μ'))) / (1 + 1/μ'), integrated over the lamp.
-TEST(Media, ASlabScattersOnceAsItsPhaseFunctionSays) {
+TEST(Media, ASlabScattersOnceAsItsPhaseFunctionSays_all) {
     constexpr double distance = 2e4, half_side = 14e3, depth = 1.5, albedo = 0.6, tilt = 0.7;
     for (const double g : {-0.5, 0.4}) {
         const dvec3 centre = distance * dvec3(std::sin(tilt), 0, std::cos(tilt));
@@ -231,7 +231,7 @@ TEST(Media, AHalfSpaceReflectsAsChandrasekharSays_all) {
 // Fournier, "An invariance property of diffusive random walks", 2003): 4/3 in the unit sphere, where all directions are alike, so
 // that parallel rays will do. With the albedo 1 - ε the furnace shows 1 - ε n + ε²/2 n (n - 1) on average after n collisions: two
 // values of ε give the mean of n, which is σ times the length.
-TEST(Media, PathsInAConvexBodyAreAsLongAsItsVolumeOverItsSurfaceSays) {
+TEST(Media, PathsInAConvexBodyAreAsLongAsItsVolumeOverItsSurfaceSays_all) {
     constexpr int rings = 64;
     TriangleMesh ball;
     for (int i = 0; i <= rings; ++i)

@@ -20,7 +20,7 @@ const std::string white_floor = "v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nusemtl 
 
 constexpr uint32_t body_samples = 32, body_size = 16;
 
-class BodiesOnAllBackends : public testing::Test {
+class BodiesOnAllBackends : public OnEachBackend {
   protected:
     void write(const std::string& name, const std::string& text) const { std::ofstream(folder_.path() / name) << text; }
     void write_mesh(const std::string& name, const std::string& text) const {
@@ -37,29 +37,24 @@ class BodiesOnAllBackends : public testing::Test {
         return R"({"file": ")" + file + R"(", "medium": {"extinction": )" + extinction + R"(, "albedo": )" + albedo +
                R"(, "boundary": "open"}})";
     }
-    static RenderSettings settings(Backend backend) {
+    static RenderSettings settings() {
         return {.width = body_size,
                 .height = body_size,
                 .samples = body_samples,
                 .max_path_length = 100,
                 .roulette_start = 1000,
                 .estimator = chapter_estimator(chapter_named("media")),
-                .backend = backend};
+                .backend = GetParam()};
     }
-    // On every backend that the device has.
-    static void expect_mean(Scene scene, double expected, double tolerance = 0) {
-        for (const Backend backend : all_backends) {
-            if (!is_supported(backend, test_device().description())) continue;
-            SCOPED_TRACE(to_string(backend));
-            const FilmImage film = render(scene, settings(backend));
-            EXPECT_EQ(film.invalid_samples(), 0u);
-            double sum = 0;
-            for (const FilmPixel& pixel : film.pixels) sum += pixel.sum.g;
-            // Each sample is 0 or 1: five standard errors.
-            const double count = double{body_size} * body_size * body_samples,
-                         error = 5 * std::sqrt(expected * (1 - expected) / count);
-            EXPECT_NEAR(sum / count, expected, std::max(error, 1e-5) + tolerance);
-        }
+    static void expect_mean(const Scene& scene, double expected, double tolerance = 0) {
+        const FilmImage film = render(scene, settings());
+        EXPECT_EQ(film.invalid_samples(), 0u);
+        double sum = 0;
+        for (const FilmPixel& pixel : film.pixels) sum += pixel.sum.g;
+        // Each sample is 0 or 1: five standard errors.
+        const double count = double{body_size} * body_size * body_samples,
+                     error = 5 * std::sqrt(expected * (1 - expected) / count);
+        EXPECT_NEAR(sum / count, expected, std::max(error, 1e-5) + tolerance);
     }
     // From straight above, in parallel rays.
     static Scene seen_from_above(Scene scene) {
@@ -70,8 +65,9 @@ class BodiesOnAllBackends : public testing::Test {
   private:
     TemporaryFolder folder_;
 };
+INSTANTIATE_TEST_SUITE_P(Backends, BodiesOnAllBackends, testing::ValuesIn(all_backends), own_backend_name);
 
-TEST_F(BodiesOnAllBackends, PathsKnowTheirMedium) {
+TEST_P(BodiesOnAllBackends, PathsKnowTheirMedium) {
     // Open bodies: one on the floor, two in it that share a face and touch its walls and floor, one in one of these, and a bar
     // that runs through several of them.
     write_mesh("media.obj", box({-3, 0, -3}, {3, 4, 3}) + box({-3, 0, -1}, {0, 2, 1}, 1) + box({0, 0, -1}, {3, 2, 1}, 2) +
@@ -81,26 +77,22 @@ TEST_F(BodiesOnAllBackends, PathsKnowTheirMedium) {
     const Scene scene = load(open("media.obj", "0.2", "0.9") + R"(, {"file": "others.obj"})",
                              R"(, "fog": {"extinction": 0.05, "albedo": 0.9}, "background": {"radiance": 1},
                                 "camera": {"position": [6, 5, 9], "target": [0, 1, 0]})");
-    for (const Backend backend : all_backends) {
-        if (!is_supported(backend, test_device().description())) continue;
-        SCOPED_TRACE(to_string(backend));
-        const GpuScene gpu_scene(test_device(), scene, Strategy::both,
-                                 {.light_probe_sampling = true, .microfacets = true, .media = true});
-        const auto scene_backend = backend->build(test_device(), gpu_scene);
-        Estimator estimator = probe("path_medium");
-        estimator.observed = project_folder() / "chapters/13_media/path_trace.glsl";
-        estimator.defines = {"SECOND_MESH " + std::to_string(scene.meshes[1].first_triangle) + "u"};
-        Renderer renderer(test_device(), *scene_backend, estimator, make_parameters(scene, settings(backend)));
-        while (renderer.advance(8)) {
-        }
-        glm::dvec3 total(0);
-        for (const FilmPixel& pixel : renderer.film().read().pixels) total += glm::dvec3(pixel.sum);
-        EXPECT_GT(total.y, 4000);
-        EXPECT_EQ(total.x, 0) << "of " << total.y;
+    const GpuScene gpu_scene(test_device(), scene, Strategy::both,
+                             {.light_probe_sampling = true, .microfacets = true, .media = true});
+    const auto scene_backend = GetParam()->build(test_device(), gpu_scene);
+    Estimator estimator = probe("path_medium");
+    estimator.observed = project_folder() / "chapters/13_media/path_trace.glsl";
+    estimator.defines = {"SECOND_MESH " + std::to_string(scene.meshes[1].first_triangle) + "u"};
+    Renderer renderer(test_device(), *scene_backend, estimator, make_parameters(scene, settings()));
+    while (renderer.advance(8)) {
     }
+    glm::dvec3 total(0);
+    for (const FilmPixel& pixel : renderer.film().read().pixels) total += glm::dvec3(pixel.sum);
+    EXPECT_GT(total.y, 4000);
+    EXPECT_EQ(total.x, 0) << "of " << total.y;
 }
 
-TEST_F(BodiesOnAllBackends, MayTouchWhatIsAroundThem) {
+TEST_P(BodiesOnAllBackends, MayTouchWhatIsAroundThem) {
     write_mesh("floor.obj", white_floor);
     write_mesh("a.obj", box({-1, 0, -1}, {1, 1, 1}));
     write_mesh("b.obj", box({-1, 1, -1}, {1, 2, 1}));
@@ -117,7 +109,7 @@ TEST_F(BodiesOnAllBackends, MayTouchWhatIsAroundThem) {
     expect_mean(above(open("a.obj") + "," + glass), std::exp(-1));
 }
 
-TEST_F(BodiesOnAllBackends, OverlapByTheirVolumes) {
+TEST_P(BodiesOnAllBackends, OverlapByTheirVolumes) {
     write_mesh("floor.obj", white_floor);
     write_mesh("large.obj", box({-2, 1, -2}, {2, 3, 2}));
     write_mesh("small.obj", box({-1, 2, -1}, {1, 4, 1}));
@@ -131,7 +123,7 @@ TEST_F(BodiesOnAllBackends, OverlapByTheirVolumes) {
 }
 
 // 40 open bodies between the camera, a matte floor and the sky hide none of its light.
-TEST_F(BodiesOnAllBackends, AreCrossedInAnyNumber) {
+TEST_P(BodiesOnAllBackends, AreCrossedInAnyNumber) {
     write_mesh("floor.obj", "v -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\n");
     std::string slabs;
     for (int i = 0; i < 40; ++i)
@@ -151,7 +143,7 @@ TEST_F(BodiesOnAllBackends, AreCrossedInAnyNumber) {
 }
 
 // In the furnace nothing absorbs, so that every sample is 1, whatever fills the box, and whatever its surface is.
-TEST_F(BodiesOnAllBackends, DisappearUnderASky) {
+TEST_P(BodiesOnAllBackends, DisappearUnderASky) {
     write_mesh("box.obj", box({-1, -1, -1}, {1, 1, 1}));
     write_mesh("glass.obj", "usemtl dense\n" + box({-1, -1, -1}, {1, 1, 1}));
     write_mesh("far.obj", box({3, 3, 3}, {4, 4, 4}));

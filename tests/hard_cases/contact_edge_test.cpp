@@ -84,7 +84,7 @@ RenderSettings view_in_each_pixel(const std::string& chapter) {
     return image;
 }
 
-TEST(ContactEdge, IsFlaggedByTheSlopeOfTheError) {
+TEST(ContactEdge, IsFlaggedByTheSlopeOfTheError_all) {
     const RenderSettings image = view_in_each_pixel(next_event_estimation);
     for (const bool has_edge : {true, false}) {
         const ErrorSlope slope = measure_error_slope(has_edge ? floor_and_wall(0, 1) : floor_and_wall(0.2, 1), image, 1024);

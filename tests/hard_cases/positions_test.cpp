@@ -78,7 +78,7 @@ void expect_no_deviation(const std::string& what, const Deviation& deviation, si
     expect_no_difference(what + ", tiles", deviation.tiles, 0.05, 2 * comparisons);
 }
 
-TEST_P(Positions, FarFromTheOriginThePictureIsTheSameOrTheLoaderWarns) {
+TEST_P(Positions, FarFromTheOriginThePictureIsTheSameOrTheLoaderWarns_all) {
     const Scene original = cornell_box();
     ASSERT_TRUE(precision_warnings(original).empty());
     const Batches expected = batches(original);
@@ -93,7 +93,7 @@ TEST_P(Positions, FarFromTheOriginThePictureIsTheSameOrTheLoaderWarns) {
     }
 }
 
-TEST_P(Positions, SizeDoesNotMatter) {
+TEST_P(Positions, SizeDoesNotMatter_all) {
     const Scene original = cornell_box();
     const Batches expected = batches(original);
     std::vector<double> scales{1e-6, 1e-3, 1e3, 1e6};

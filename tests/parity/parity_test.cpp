@@ -237,9 +237,8 @@ std::vector<Backend> other_backends() {
     return others;
 }
 INSTANTIATE_TEST_SUITE_P(, Parity, testing::ValuesIn(other_backends()), backend_name);
-INSTANTIATE_TEST_SUITE_P(, ParityOnScenes, testing::ValuesIn(other_backends()), [](const auto& backend) {
-    return instance_name(to_string(backend.param), backend.param == pipeline_backend ? Run::always : Run::with_all);
-});
+INSTANTIATE_TEST_SUITE_P(, ParityOnScenes, testing::ValuesIn(other_backends()),
+                         [](const auto& backend) { return instance_name(to_string(backend.param), Run::with_all); });
 
 }  // namespace
 }  // namespace lab

@@ -190,7 +190,7 @@ Scene box_of_medium_below_a_lamp() {
 }
 
 // Rays end at collisions, also the last one of a path. Light samples start there or, if they are sampled by angles, on a ray.
-TEST(PathRecorder, EndsRaysInMediaAtCollisions) {
+TEST(PathRecorder, EndsRaysInMediaAtCollisions_all) {
     const auto is_on = [](const vec3& point, const PathVertex& vertex) {  // some are thousands of units away
         return glm::length(glm::cross(point - vertex.origin, vertex.direction)) < 1e-4f + 1e-6f * glm::length(point);
     };
@@ -241,7 +241,7 @@ TEST(PathRecorder, EndsRaysInMediaAtCollisions) {
 }
 
 // A picture of one sample per pixel is what the camera paths find and what the light paths send to the pixels that see them.
-TEST(PathRecorder, RecordsLightPaths) {
+TEST(PathRecorder, RecordsLightPaths_all) {
     Scene scene = room_with_box(dielectric_material(1.5f), {-0.9f, 0.5f, -0.9f}, {0.9f, 0.6f, 0.9f});  // a pane below the lamp
     RenderSettings settings = settings_for(chapter_named("light_paths"));
     constexpr uint32_t extent = 12;

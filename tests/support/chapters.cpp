@@ -1,6 +1,7 @@
 #include "support/chapters.h"
 
 #include <algorithm>
+#include <map>
 
 #include "error.h"
 #include "files/file.h"
@@ -10,9 +11,21 @@
 namespace lab {
 namespace {
 
-nlohmann::json expectations(const std::string& chapter) {
-    const auto file = project_folder() / "chapters" / chapter / "chapter.json";
-    return parse_json(file.string(), read_file(file, 1 << 16)).value("tests", nlohmann::json::object());
+// Suites ask all chapters for their parameters whenever a program starts, and each test starts one: so files are read once.
+template <typename Read>
+const auto& once(const std::string& chapter, const Read& read) {
+    static std::map<std::string, decltype(read(chapter))> known;
+    const auto found = known.find(chapter);
+    return found != known.end() ? found->second : known.emplace(chapter, read(chapter)).first->second;
+}
+
+const Chapter& described(const std::string& chapter) { return once(chapter, load_chapter); }
+
+const nlohmann::json& expectations(const std::string& chapter) {
+    return once(chapter, [](const std::string& name) {
+        const auto file = project_folder() / "chapters" / name / "chapter.json";
+        return parse_json(file.string(), read_file(file, 1 << 16)).value("tests", nlohmann::json::object());
+    });
 }
 
 }  // namespace
@@ -23,24 +36,22 @@ std::string chapter_named(const std::string& name) {
     return found == all_chapters.end() ? throw UserError("there is no chapter " + name) : *found;
 }
 
-bool samples_lights(const std::string& chapter) { return !load_chapter(chapter).strategies.empty(); }
+bool samples_lights(const std::string& chapter) { return !described(chapter).strategies.empty(); }
 
-bool weights_lights(const std::string& chapter) {
-    return std::ranges::count(load_chapter(chapter).strategies, Strategy::both) > 0;
-}
+bool weights_lights(const std::string& chapter) { return std::ranges::count(described(chapter).strategies, Strategy::both) > 0; }
 
-bool handles_dielectrics(const std::string& chapter) { return load_chapter(chapter).handles.dielectrics; }
+bool handles_dielectrics(const std::string& chapter) { return described(chapter).handles.dielectrics; }
 
-bool handles_microfacets(const std::string& chapter) { return load_chapter(chapter).handles.microfacets; }
-bool has_light_paths(const std::string& chapter) { return load_chapter(chapter).handles.light_paths; }
+bool handles_microfacets(const std::string& chapter) { return described(chapter).handles.microfacets; }
+bool has_light_paths(const std::string& chapter) { return described(chapter).handles.light_paths; }
 
 bool has_option(const std::string& chapter, const std::string& option) {
-    return std::ranges::count(load_chapter(chapter).options, option, &ChapterOption::name) > 0;
+    return std::ranges::count(described(chapter).options, option, &ChapterOption::name) > 0;
 }
 
 bool splits_paths(const std::string& chapter) { return has_option(chapter, "--splitting-factor"); }
 bool has_roulette(const std::string& chapter) { return has_option(chapter, "--survival-cap"); }
-bool is_pseudorandom(const std::string& chapter) { return !load_chapter(chapter).low_discrepancy; }
+bool is_pseudorandom(const std::string& chapter) { return !described(chapter).low_discrepancy; }
 bool weighs_by_albedo(const std::string& chapter) { return expectations(chapter).value("weighs_by_albedo", false); }
 bool repeats_another(const std::string& chapter) { return expectations(chapter).value("repeats_another", false); }
 

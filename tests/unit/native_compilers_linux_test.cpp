@@ -35,7 +35,7 @@ std::vector<float> run(const native::Code& code) {
     return results;
 }
 
-TEST(NativeCompilers, NewerOnesGiveTheSameResults) {
+TEST(NativeCompilers, NewerOnesGiveTheSameResults_all) {
     for (const native::Mode mode : {native::Mode::fast, native::Mode::debug}) {
         native::set_mode(mode);
         const native::Code code = native::load(compile_shader({.file = folder() / "every_function.comp"}, true));

@@ -37,7 +37,7 @@ class InspectionTest : public ViewerTest {
     }
 };
 
-TEST_F(InspectionTest, TheVerdictFollowsTheShader) {
+TEST_F(InspectionTest, TheVerdictFollowsTheShader_all) {
     // A private chapter, so that the sources stay untouched.
     const fs::path shader = folder_.path() / "path_trace.glsl";
     const std::string good = text_of(project_folder() / "chapters" / chapter_.name / "path_trace.glsl");
@@ -92,7 +92,7 @@ TEST_F(InspectionTest, TheVerdictFollowsTheShader) {
     wait_until("unbiased", [&] { return session().latest_verdict() && !session().latest_verdict()->is_biased; });
 }
 
-TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy) {
+TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy_all) {
     open(options_with_reference());
     wait_for_verdict();
     hold(GLFW_KEY_W, 2);
@@ -106,7 +106,7 @@ TEST_F(InspectionTest, WhereThereIsNoReferenceItSaysWhy) {
     wait_for_verdict();
 }
 
-TEST_F(InspectionTest, AClickFollowsAPathAndADragDoesNot) {
+TEST_F(InspectionTest, AClickFollowsAPathAndADragDoesNot_all) {
     open(options_with_reference());
     wait_for_full_size();
     drag({500, 400}, {520, 400});
@@ -135,7 +135,7 @@ TEST_F(InspectionTest, AClickFollowsAPathAndADragDoesNot) {
 }
 
 // The camera ray of a lens starts at a point of its aperture; focused, it meets the pinhole's ray where it hits.
-TEST_F(InspectionTest, AClickedPointCanBeFocused) {
+TEST_F(InspectionTest, AClickedPointCanBeFocused_all) {
     chapter_ = load_chapter(chapter_named("lens"));
     Options options = make_options();
     options.scene.file = scenes / "focus.json";
@@ -168,7 +168,7 @@ TEST_F(InspectionTest, AClickedPointCanBeFocused) {
 }
 
 // A point in fog has no surface to look from.
-TEST_F(InspectionTest, CollisionsInFogAreGreen) {
+TEST_F(InspectionTest, CollisionsInFogAreGreen_all) {
     open_small("media", "fog.json", {96, 64});
     size_t paths_with_green = 0;
     for (float x = 500; x < 800; x += 30) {
@@ -187,7 +187,7 @@ TEST_F(InspectionTest, CollisionsInFogAreGreen) {
 }
 
 // The nodes above the lamp of a light sample are green, and only if it was chosen by the tree.
-TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
+TEST_F(InspectionTest, TheBranchOfALightSampleIsShown_all) {
     chapter_ = load_chapter(chapter_named("many_lights"));
     Options options = make_options();
     options.scene.file = scenes / "heart_light.json";
@@ -219,7 +219,7 @@ TEST_F(InspectionTest, TheBranchOfALightSampleIsShown) {
 }
 
 // The path from the lamp that belongs to the same sample.
-TEST_F(InspectionTest, LightPathsAreOrange) {
+TEST_F(InspectionTest, LightPathsAreOrange_all) {
     open_small("light_paths", "caustics.json", {90, 60});
     size_t most = 0;
     for (const float x : {500.0f, 560.0f, 640.0f, 720.0f}) {

@@ -139,7 +139,7 @@ TEST_F(ViewerTest, LobesAreShownAsOnWhereTheSceneHasThem) {
     EXPECT_TRUE(is_checked());
 }
 
-TEST_F(ViewerTest, AButtonSetsWhatTheReferenceHas) {
+TEST_F(ViewerTest, AButtonSetsWhatTheReferenceHas_all) {
     Options options = make_options();
     options.scene.file = scenes / "plates.json";
     options.image.width = 300;
