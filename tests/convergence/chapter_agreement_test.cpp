@@ -118,7 +118,7 @@ TEST_P(ChapterAgreement, HasTheSameImageAtEveryLength) {
 }
 
 // All variants that a chapter's shader can be compiled as, in a studio with rough metal.
-TEST(ChapterChoices, ChangeTheNoiseAndNotTheImage) {
+TEST(ChapterChoices, ChangeTheNoiseAndNotTheImage_all) {
     Scene scene = load_shipped_scene("studio.json");
     make_metal(scene, 0.7f);
     uint32_t seed = 2000;

@@ -32,7 +32,7 @@ def load():
 
 def make(mistake, tree):
     """Copies what the test programs read into `tree`, with the mistake in it, if any."""
-    for folder in ("shaders", "chapters", "tests/shaders", "tests/hard_cases"):
+    for folder in ("shaders", "chapters", "tests/shaders", "tests/hard_cases", "tests/convergence"):
         shutil.copytree(ROOT / folder, tree / folder)
     (tree / "assets").symlink_to(ROOT / "assets")
     if not mistake:
@@ -43,8 +43,8 @@ def make(mistake, tree):
 
 
 def run(program, test, tree):
-    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures. The tests may
-    include those that run only with ./lab test --all, whose names end in _all."""
+    """Runs tests of a program on that tree; returns all tests that ran, with the messages of their failures. Those that run only
+    with ./lab test --all, whose names end in _all, run if there are no others: the longer ones of two are too slow for this."""
     # Programs look for the shaders in parent folders.
     binary = tree / "bin" / f"{program}_tests"
     binary.parent.mkdir(exist_ok=True)
@@ -53,7 +53,10 @@ def run(program, test, tree):
     report.unlink(missing_ok=True)
     environment = {**os.environ, "LAB_TEST_STOP_AT_VERDICT": "1"}
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    result = test_report.run(binary, report, f"--gtest_filter={test}:{test}_all", env=environment, **streams)
+    chosen = f"--gtest_filter={test}"
+    if not test_report.list_tests(binary, chosen):
+        chosen += "_all"
+    result = test_report.run(binary, report, chosen, env=environment, **streams)
     if not report.exists():
         sys.exit(f"{program}_tests ended with {result.returncode} before its tests did:\n{result.stdout[-2000:]}")
     tests, _ = test_report.read(report)
