@@ -1,5 +1,4 @@
 // The same samples give the same image, no matter how a render is cut into dispatches.
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -34,14 +33,15 @@ class Determinism : public OnEachChapter {
     // With glass if it can send light from lamps to any pixel.
     const Scene scene = has_light_paths(GetParam()) ? room_with_box(dielectric_material(1.5f)) : lit_box();
 };
-const std::vector<std::string> chapters_with_loops = chapters_that([](const std::string& chapter) {
-    return named_includes(chapter_estimator(chapter)).at("sample_loop.glsl") !=
-           project_folder() / "shaders/engine/sample_loop.glsl";
-});
+// Whether it has a loop over samples of its own, or paths of its own, which such a loop keeps from one bounce to the next.
+bool has_own_loop(const std::string& chapter) {
+    const auto folder = project_folder() / "chapters" / chapter;
+    return exists(folder / "sample_loop.glsl") || exists(folder / "extend_path.glsl");
+}
 
-// A default run has those with a loop of their own, and one of those with the same paths.
+// A default run has those, and one of those with the same paths.
 INSTANTIATE_TEST_SUITE_P(Chapters, Determinism, testing::ValuesIn(all_chapters), [](const auto& chapter) {
-    return std::ranges::count(chapters_with_loops, chapter.param) ? chapter_name(chapter) : own_estimator_name(chapter);
+    return has_own_loop(chapter.param) ? chapter_name(chapter) : own_estimator_name(chapter);
 });
 
 bool are_identical(const FilmImage& a, const FilmImage& b) {

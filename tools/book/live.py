@@ -16,6 +16,7 @@ import struct
 import tempfile
 from array import array
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -169,7 +170,8 @@ def length_of(reference):
     return int(reference.rpartition("_")[2])
 
 
-def packed(data):
+@cache
+def packed(data):  # chapters share scenes
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
 
 

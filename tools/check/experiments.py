@@ -157,7 +157,7 @@ def ball(says, rows=8, columns=16):
     faces = [
         [corner(r, c), corner(r, c + 1), corner(r + 1, c + 1), corner(r + 1, c)] for r in range(rows) for c in range(columns)
     ]
-    faces = [[p for i, p in enumerate(face) if not np.allclose(p, face[i - 1])] for face in faces]
+    faces = [[p for i, p in enumerate(face) if math.dist(p, face[i - 1]) > 1e-6 * says["ball"]] for face in faces]  # at the poles
     return [face[::-1] for face in faces]
 
 
