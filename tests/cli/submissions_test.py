@@ -51,6 +51,11 @@ class Submissions:
             for place, _, source in (text.partition("=") for text in given[1::2])
         }
 
+    def check(self, *arguments):
+        code, out, err = self.run_tool("check", *arguments, "--json")
+        self.assertIn(code, (0, 1), err)
+        return json.loads(out)
+
 
 class GradedTogether(Submissions, ProgramTest):
     def test_a_file_in_a_copy_brings_all_shaders_of_it(self):
@@ -137,11 +142,6 @@ class GradedTogether(Submissions, ProgramTest):
     def test_an_empty_file_is_called_empty(self):
         for name in ("anna.glsl", TECHNIQUE):
             self.assert_tool_refused(["check", 3, self.write(name, "\n")], f"{name}: is empty", code=2)
-
-    def check(self, *arguments):
-        code, out, err = self.run_tool("check", *arguments, "--json")
-        self.assertIn(code, (0, 1), err)
-        return json.loads(out)
 
     def test_errors_name_the_file_that_they_are_in(self):
         copy = self.copy_chapter(3, "21_mine")
