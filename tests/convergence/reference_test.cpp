@@ -22,7 +22,7 @@ constexpr double tile_floor = 5e-4;
 
 // What "tests" in the chapters' chapter.json ask for. Chapters that find lights by bounces are held to 1 % of the image's mean,
 // the others to 0.3 %; less strictly in the slowest cases: glass with a small lamp, whose caustics bounces find by chance, small
-// lamps out of focus, and the studio. Chapters that follow another one's paths, as RepeatedChapter shows, do not run every time.
+// lamps out of focus, and the studio. Only those that are cheap, or alone find a mistake of the catalogue, run every time.
 const std::vector<ReferenceCase> all_references = reference_cases();
 
 // A batch's estimate over a rectangle of pixels, and the reference's mean there.

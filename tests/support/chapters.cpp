@@ -11,22 +11,23 @@
 namespace lab {
 namespace {
 
+struct Description {
+    Chapter chapter;
+    nlohmann::json tests;
+};
+
 // Suites ask all chapters for their parameters whenever a program starts, and each test starts one: so files are read once.
-template <typename Read>
-const auto& once(const std::string& chapter, const Read& read) {
-    static std::map<std::string, decltype(read(chapter))> known;
-    const auto found = known.find(chapter);
-    return found != known.end() ? found->second : known.emplace(chapter, read(chapter)).first->second;
+const Description& description_of(const std::string& chapter) {
+    static std::map<std::string, Description> known;
+    if (const auto found = known.find(chapter); found != known.end()) return found->second;
+    const auto file = project_folder() / "chapters" / chapter / "chapter.json";
+    const nlohmann::json content = parse_json(file.string(), read_file(file, 1 << 16));
+    return known.emplace(chapter, Description{load_chapter(chapter), content.value("tests", nlohmann::json::object())})
+        .first->second;
 }
 
-const Chapter& described(const std::string& chapter) { return once(chapter, load_chapter); }
-
-const nlohmann::json& expectations(const std::string& chapter) {
-    return once(chapter, [](const std::string& name) {
-        const auto file = project_folder() / "chapters" / name / "chapter.json";
-        return parse_json(file.string(), read_file(file, 1 << 16)).value("tests", nlohmann::json::object());
-    });
-}
+const Chapter& described(const std::string& chapter) { return description_of(chapter).chapter; }
+const nlohmann::json& expectations(const std::string& chapter) { return description_of(chapter).tests; }
 
 }  // namespace
 
