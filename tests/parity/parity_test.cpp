@@ -124,34 +124,35 @@ Estimators with_every_hit(Estimators all) {
     return all;
 }
 
+// Ends a test whose backend the device lacks.
+void require(Backend backend) {
+    if (is_supported(backend, test_device().description())) return;
+    if (must_have_all_backends()) FAIL() << "this driver is known to have all backends";
+    GTEST_SKIP() << "the device lacks " << missing_for(backend, test_device().description()).front();
+}
+
 class Parity : public testing::TestWithParam<Backend> {
   protected:
-    void SetUp() override {
-        if (is_supported(GetParam(), test_device().description())) return;
-        if (must_have_all_backends()) FAIL() << "this driver is known to have all backends";
-        GTEST_SKIP() << "the device lacks " << missing_for(GetParam(), test_device().description()).front();
-    }
+    void SetUp() override { require(GetParam()); }
 
     void expect_same(const std::string& what, const Scene& scene, uint32_t size, const Limits& limits) {
         const RenderSettings settings{.width = size, .height = size};
         expect_parity(what, GetParam(), BackendScene(compute_backend, scene).render(settings),
                       BackendScene(GetParam(), scene).render(settings), limits);
     }
-
-    // On a scene file of assets/scenes.
-    void expect_same_on(const std::filesystem::path& file, const Estimators& estimators);
 };
 
-void Parity::expect_same_on(const std::filesystem::path& file, const Estimators& estimators) {
+// On a scene file of assets/scenes.
+void expect_same_on(const std::filesystem::path& file, Backend backend, const Estimators& estimators) {
     const Scene scene = load_scene(file);
     for (const bool with_probe : {false, true}) {
         const auto samples_so = [&](const auto& e) { return samples_probe(e.second.estimator) == with_probe; };
         if (std::none_of(estimators.begin(), estimators.end(), samples_so)) continue;
-        const BackendScene expected(compute_backend, scene, with_probe), actual(GetParam(), scene, with_probe);
+        const BackendScene expected(compute_backend, scene, with_probe), actual(backend, scene, with_probe);
         for (const auto& [name, settings] : estimators)
             if (samples_so(std::pair(name, settings)))
-                expect_parity(file.stem().string() + ", " + name, GetParam(), expected.render(settings), actual.render(settings),
-                              limits_of(scene, GetParam()));
+                expect_parity(file.stem().string() + ", " + name, backend, expected.render(settings), actual.render(settings),
+                              limits_of(scene, backend));
     }
 }
 
@@ -160,7 +161,7 @@ void Parity::expect_same_on(const std::filesystem::path& file, const Estimators&
 TEST_P(Parity, ChaptersWithTheirOwnPaths) {
     std::vector<std::string> chapters = chapters_that([](const std::string& chapter) { return !repeats_another(chapter); });
     chapters.push_back(all_chapters.back());
-    expect_same_on(project_folder() / "assets/scenes/cornell_box.json", with_every_hit(estimators_of(chapters)));
+    expect_same_on(project_folder() / "assets/scenes/cornell_box.json", GetParam(), with_every_hit(estimators_of(chapters)));
 }
 
 // In the window, loops that do not end are ended. Others are not changed by that.
@@ -177,11 +178,6 @@ TEST_P(Parity, LimitedLoopsFollowTheSamePaths) {
             }
         }
     }
-}
-
-TEST_P(Parity, EveryChapterOnEveryScene_all) {
-    for (const auto& file : sorted_entries(project_folder() / "assets" / "scenes"))
-        expect_same_on(file, with_every_hit(estimators_of(all_chapters)));
 }
 
 TEST_P(Parity, TurnedStretchedAndMirroredInstances) {
@@ -230,6 +226,22 @@ std::vector<Backend> other_backends() {
     return others;
 }
 INSTANTIATE_TEST_SUITE_P(, Parity, testing::ValuesIn(other_backends()), backend_name);
+
+// A test for each scene: all scenes in one take a quarter of an hour, which an interrupted --all would lose.
+class ParityOnScene : public testing::TestWithParam<std::tuple<Backend, std::filesystem::path>> {
+  protected:
+    void SetUp() override { require(std::get<0>(GetParam())); }
+};
+TEST_P(ParityOnScene, OfEveryChapter_all) {
+    const auto& [backend, file] = GetParam();
+    expect_same_on(file, backend, with_every_hit(estimators_of(all_chapters)));
+}
+INSTANTIATE_TEST_SUITE_P(, ParityOnScene,
+                         testing::Combine(testing::ValuesIn(other_backends()),
+                                          testing::ValuesIn(sorted_entries(project_folder() / "assets/scenes"))),
+                         [](const auto& info) {
+                             return to_string(std::get<0>(info.param)) + "_" + std::get<1>(info.param).stem().string();
+                         });
 
 }  // namespace
 }  // namespace lab
