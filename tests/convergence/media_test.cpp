@@ -223,8 +223,8 @@ TEST(Media, AHalfSpaceReflectsAsChandrasekharSays) {
     expect_half_space(0.2, 20, 0.005);
 }
 TEST(Media, AHalfSpaceReflectsAsChandrasekharSays_all) {
-    expect_half_space(1, 1800, 0.001);
-    expect_half_space(0.2, 300, 0.001);
+    expect_half_space(1, 2200, 0.001);
+    expect_half_space(0.2, 360, 0.001);
 }
 
 // Rays that enter a convex body from everywhere stay in it for the length 4V/S on average, however it scatters (Blanco and
