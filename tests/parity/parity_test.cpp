@@ -227,7 +227,7 @@ std::vector<Backend> other_backends() {
 }
 INSTANTIATE_TEST_SUITE_P(, Parity, testing::ValuesIn(other_backends()), backend_name);
 
-// A test for each scene: all scenes in one take a quarter of an hour, which an interrupted --all would lose.
+// A test for each scene, so that an interrupted --all loses little.
 class ParityOnScene : public testing::TestWithParam<std::tuple<Backend, std::filesystem::path>> {
   protected:
     void SetUp() override { require(std::get<0>(GetParam())); }
