@@ -246,8 +246,9 @@ std::vector<uint32_t> table() {
     return numbers;
 }
 
-std::vector<uint32_t> run_natively(const native::Code& code) {
-    std::vector<uint32_t> results(program_count * invocations * group_count), numbers = table();
+// Each shader gives count numbers an invocation.
+std::vector<uint32_t> run_natively(const native::Code& code, uint32_t count) {
+    std::vector<uint32_t> results(count * invocations * group_count), numbers = table();
     native::Bindings bindings{};
     const auto bind = [&](size_t index, std::vector<uint32_t>& words) {
         bindings.ranges[index] = {reinterpret_cast<std::byte*>(words.data()), words.size() * sizeof(uint32_t)};
@@ -259,8 +260,8 @@ std::vector<uint32_t> run_natively(const native::Code& code) {
     return results;
 }
 
-std::vector<uint32_t> run_on_device(const ShaderSource& source) {
-    std::vector<uint32_t> results(program_count * invocations * group_count);
+std::vector<uint32_t> run_on_device(const ShaderSource& source, uint32_t count) {
+    std::vector<uint32_t> results(count * invocations * group_count);
     Buffer result_buffer(test_device(), results.size() * sizeof(uint32_t), vk::BufferUsageFlagBits::eStorageBuffer);
     const std::vector<uint32_t> words = table();
     const Buffer numbers(test_device(), std::span(words), vk::BufferUsageFlagBits::eStorageBuffer);
@@ -301,10 +302,10 @@ void expect_equal_results(uint32_t first_seed, uint32_t shader_count) {
         ASSERT_EQ(lanes[shader].why_one_by_one, "");
         ASSERT_EQ(eight[shader].invocations_at_once, 8);
         ASSERT_EQ(scalar[shader].invocations_at_once, 1);
-        const std::vector<uint32_t> expected = run_on_device(sources[shader]);
+        const std::vector<uint32_t> expected = run_on_device(sources[shader], program_count);
         for (const auto& [code, how] : {std::pair(lanes[shader], "in lanes"), std::pair(eight[shader], "in eight lanes"),
                                         std::pair(scalar[shader], "one by one")}) {
-            const std::vector<uint32_t> results = run_natively(code);
+            const std::vector<uint32_t> results = run_natively(code, program_count);
             const auto wrong = std::mismatch(results.begin(), results.end(), expected.begin());
             if (wrong.first == results.end()) continue;
             const auto i = static_cast<size_t>(wrong.first - results.begin());
@@ -340,10 +341,11 @@ TEST(NativePrograms, AddInTheDevicesOrder) {
                    "give(distance(a.x, b.x)); give(dot(a, x2())); give(dot(b, x3())); give(dot(c, x4())); give(length(c));\n"
                    "give((m * a).x); give((n * b).x); give((o * c).x); give((a * m).x); give((b * n).x); give((c * o).x);\n"
                    "give((m * m)[0].x); give((n * n)[0].x); give((o * o)[0].x);\n}\n");
-    const std::vector<uint32_t> expected = run_on_device(source);
+    constexpr uint32_t sums = 14;
+    const std::vector<uint32_t> expected = run_on_device(source, sums);
     for (const native::Mode mode : {native::Mode::fast, native::Mode::debug}) {
         native::set_mode(mode);
-        const std::vector<uint32_t> results = run_natively(native::load(compile_shader(source, true)));
+        const std::vector<uint32_t> results = run_natively(native::load(compile_shader(source, true)), sums);
         for (size_t i = 0; i < results.size(); ++i)
             ASSERT_EQ(results[i], expected[i])
                 << "number " << i / (invocations * group_count) << ", mode " << static_cast<int>(mode);
