@@ -46,7 +46,6 @@ class Information(ProgramTest):
             (media, ["--background=1,1,1"], None),
             (media, ["foggy.json", "--background=1,1,1"], "--background has no effect"),
             (CHAPTER, ["--max-threads-per-pixel=2", "--backend=compute"], None),
-            (CHAPTER, ["--max-threads-per-pixel=2", "--backend=native"], "--max-threads-per-pixel has no effect"),
         ):
             scene = [] if "foggy.json" in options else ["quad.json"]
             _, _, err = self.run_program(*scene, "--width=4", "--height=4", "--samples=1", *options, program=program)
@@ -61,14 +60,6 @@ class Information(ProgramTest):
         ):
             _, _, err = self.run_program("dark.json", "--width=4", "--height=4", "--samples=1", *options)
             self.assertRegex(err, rf"\A{words}[^\n]*\n\Z" if words else r"\A\Z", options)
-
-    def test_paths_from_the_home_folder(self):
-        self.render(
-            "quad.json", "--width=4", "--height=4", "--samples=1", "--output=~/home.exr", environment={"HOME": str(self.folder)}
-        )
-        self.render("--output=~/merged.exr", "home.exr", program=MERGE, environment={"HOME": str(self.folder)})
-        self.assertTrue((self.folder / "home.exr").exists() and (self.folder / "merged.exr").exists())
-        self.assertFalse((self.folder / "~").exists())
 
     def test_a_folder_does_not_hide_a_scene(self):
         (self.folder / "furnace").mkdir()
@@ -114,6 +105,23 @@ class Information(ProgramTest):
     def test_quiet_prints_nothing(self):
         code, out, err = self.run_program("quad.json", "--width", 8, "--height", 8, "--samples", 1, "--quiet")
         self.assertEqual((code, out, err), (0, "", ""))
+
+
+class NotOnWindows(ProgramTest):
+    """Windows has no backend `native`, and names the home folder otherwise."""
+
+    def test_a_limit_of_threads_has_no_effect_on_native(self):
+        options = ["--width=4", "--height=4", "--samples=1", "--max-threads-per-pixel=2", "--backend=native"]
+        _, _, err = self.run_program("quad.json", *options)
+        self.assertRegex(err, r"\Anote: [^\n]*--max-threads-per-pixel has no effect[^\n]*\n\Z")
+
+    def test_paths_from_the_home_folder(self):
+        self.render(
+            "quad.json", "--width=4", "--height=4", "--samples=1", "--output=~/home.exr", environment={"HOME": str(self.folder)}
+        )
+        self.render("--output=~/merged.exr", "home.exr", program=MERGE, environment={"HOME": str(self.folder)})
+        self.assertTrue((self.folder / "home.exr").exists() and (self.folder / "merged.exr").exists())
+        self.assertFalse((self.folder / "~").exists())
 
 
 class WrongArguments(ProgramTest):
