@@ -321,31 +321,32 @@ void expect_equal_results(uint32_t first_seed, uint32_t shader_count) {
 TEST(NativePrograms, AddInTheDevicesOrder) {
     const TemporaryFolder folder;
     ShaderSource source{.file = folder.path() / "sums.comp"};
-    const std::string count = std::to_string(invocations * group_count);
+    const std::vector<std::string> sums{"distance(a.x, b.x)", "dot(a, x2())", "dot(b, x3())", "dot(c, x4())", "length(c)",
+                                        "(m * a).x",          "(n * b).x",    "(o * c).x",    "(a * m).x",    "(b * n).x",
+                                        "(c * o).x",          "(m * m)[0].x", "(n * n)[0].x", "(o * o)[0].x"};
+    std::string statements;
+    for (size_t i = 0; i < sums.size(); ++i)
+        statements += "results[" + std::to_string(i * invocations * group_count) +
+                      "u + gl_GlobalInvocationID.x] = floatBitsToUint(" + sums[i] + ");\n";
     write_file(source.file,
                "#version 460\n#extension GL_EXT_scalar_block_layout : require\n"
                "layout(scalar, set = 0, binding = 1) buffer Results { uint results[]; };\n"
                "layout(scalar, set = 0, binding = 2) readonly buffer Table { uint table[]; };\n"
                "layout(local_size_x = " +
                    std::to_string(invocations) +
-                   ") in;\nuint place = 0u, next = 0u;\n"
+                   ") in;\nuint next = 0u;\n"
                    "float x() { uint i = next++; return (i % 3u == 0u ? -1.0 : 1.0) * float(1u + i + (table[i & 15u] ^ "
                    "gl_GlobalInvocationID.x)); }\n"
                    "vec2 x2() { float a = x(); return vec2(a, x()); }\nvec3 x3() { vec2 a = x2(); return vec3(a, x()); }\n"
                    "vec4 x4() { vec2 a = x2(); return vec4(a, x2()); }\n"
-                   "void give(float a) { results[place++ * " +
-                   count +
-                   "u + gl_GlobalInvocationID.x] = floatBitsToUint(a); }\n"
                    "void main() {\nvec2 a = x2(); vec3 b = x3(); vec4 c = x4();\nmat2 m = mat2(x2(), x2()); "
-                   "mat3 n = mat3(x3(), x3(), x3()); mat4 o = mat4(x4(), x4(), x4(), x4());\n"
-                   "give(distance(a.x, b.x)); give(dot(a, x2())); give(dot(b, x3())); give(dot(c, x4())); give(length(c));\n"
-                   "give((m * a).x); give((n * b).x); give((o * c).x); give((a * m).x); give((b * n).x); give((c * o).x);\n"
-                   "give((m * m)[0].x); give((n * n)[0].x); give((o * o)[0].x);\n}\n");
-    constexpr uint32_t sums = 14;
-    const std::vector<uint32_t> expected = run_on_device(source, sums);
+                   "mat3 n = mat3(x3(), x3(), x3()); mat4 o = mat4(x4(), x4(), x4(), x4());\n" +
+                   statements + "}\n");
+    const auto count = static_cast<uint32_t>(sums.size());
+    const std::vector<uint32_t> expected = run_on_device(source, count);
     for (const native::Mode mode : {native::Mode::fast, native::Mode::debug}) {
         native::set_mode(mode);
-        const std::vector<uint32_t> results = run_natively(native::load(compile_shader(source, true)), sums);
+        const std::vector<uint32_t> results = run_natively(native::load(compile_shader(source, true)), count);
         for (size_t i = 0; i < results.size(); ++i)
             ASSERT_EQ(results[i], expected[i])
                 << "number " << i / (invocations * group_count) << ", mode " << static_cast<int>(mode);
